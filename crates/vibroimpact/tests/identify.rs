@@ -224,7 +224,12 @@ fn force_histories_determine_the_contact_and_the_gauge() {
     with_records(folder.path(), &scene(1.2e9, 0.05), 2e-5, 2.0);
     let free = "contact.stiffness_n_m1_5,gauge.time_constant_s=1e-6..1e-3";
     // One start, because the misfit has one minimum.
-    let found = in_folder(folder.path(), &["--free", free, "--starts", "1", "--plot", "picture.svg"]);
+    fs::write(folder.path().join("next.csv"), "striker.speed_m_s\n0.1\n4\n").unwrap();
+    let options = ["--free", free, "--starts", "1", "--plot", "picture.svg", "--candidates", "next.csv"];
+    let found = in_folder(folder.path(), &options);
+    // A force history is measured again: at 4 m/s with a force over twelve times as large as the one in the table's third.
+    let ratio = |k: usize| found["candidates"][k]["volume_ratio"].as_f64().unwrap();
+    assert!(found["candidates"][0]["line"] == 3 && ratio(0) < 0.5 && (0.5..1.0).contains(&ratio(1)), "{found:#}");
     for (j, truth) in [1.2e9, 2e-5].into_iter().enumerate() {
         let [low, high] = [0, 1].map(|k| found["parameters"][j]["profile_interval"][k].as_f64().unwrap());
         // Three standard deviations.
@@ -254,7 +259,7 @@ fn undetermined_combinations_are_reported() {
     let open = &found["undetermined"][0];
     assert_eq!(found["undetermined"].as_array().unwrap().len(), 1);
     let text = open["text"].as_str().unwrap();
-    assert!(text.contains("only a combination") && text.contains("and raising"), "{text}");
+    assert!(text.contains("leave a combination open: raising") && text.contains("and raising"), "{text}");
     let entry = |field: &str| open["direction"][field].as_f64().unwrap();
     let ratio = entry("contact.stiffness_n_m1_5") / entry("striker.mass_kg");
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
@@ -306,6 +311,33 @@ fn the_next_experiment_is_the_most_informative_one() {
         let again = identify(&truth, &with, &["--free", FREE, "--starts", "1"]);
         // The fit changes slightly, and with it the derivatives.
         assert!((volume(&again) / before / ratio - 1.0).abs() < 0.1, "{one}: {} {ratio}", volume(&again) / before);
+    }
+}
+
+#[test]
+fn long_names_and_single_numbers_keep_the_text_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = scene(1e9, 0.05);
+    let name = "middle_of_the_long_upper_beam";
+    scene["structure"]["points"][name] = scene["structure"]["points"]["middle"].clone();
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    fs::write(folder.path().join("data.csv"), format!("location,restitution,restitution_sd\n{name},0.3,0.01\n"))
+        .unwrap();
+    fs::write(folder.path().join("next.csv"), "location\ntip\n").unwrap();
+    let field = format!("structure.points.{name}.shape[0]");
+    let arguments = ["identify", "data.csv", "--scene", "scene.json", "--free", &field, "--candidates", "next.csv"];
+    let text = stdout(&run(folder.path(), &arguments));
+    let [header, row] = [0, 1].map(|k| text.lines().nth(k).unwrap());
+    let value = row.find(&field).unwrap() + field.len() + 2;
+    assert_eq!(header.find("value"), Some(value), "{text}");
+    assert!(!row[value..].starts_with(' '), "{text}");
+    for part in [
+        "1 value, ",
+        "there are as many parameters as measured values",
+        "all modes listed, the same",
+        "location = tip\n",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
     }
 }
 
@@ -400,12 +432,27 @@ fn bad_options_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), scene(1e9, 0.05).to_string()).unwrap();
     fs::write(folder.path().join("data.csv"), "location,restitution\ntip,0.3\nmiddle,0.3\n").unwrap();
-    fs::write(folder.path().join("next.csv"), "location,restitution\ntip,0.3\n").unwrap();
+    for (name, table) in [
+        ("next.csv", "location,restitution\ntip,0.3\n"),
+        ("off.csv", "location\ntip\ntap\n"),
+        ("unknown.csv", "location,colour\ntip,3\n"),
+        ("free.csv", "location,contact.stiffness_n_m1_5\ntip,1e9\n"),
+        ("heavy.csv", "striker.mass_kg\n0.05\n-0.05\n"),
+    ] {
+        fs::write(folder.path().join(name), table).unwrap();
+    }
     for (options, said) in [
         (["--level", "1"], "--level = 1.0 is not allowed: a probability from 0.5 to 0.999"),
         (["--starts", "0"], "--starts = 0 is not allowed"),
         (["--candidates", "next.csv"], "column restitution = 1 column must be left out of a table of candidates"),
         (["--candidates", "none.csv"], "cannot read none.csv"),
+        (["--candidates", "off.csv"], "the candidates, line 3, location = \"tap\" is not allowed: one of"),
+        (["--candidates", "unknown.csv"], "the candidates, line 2, colour = 3.0 is not allowed: unknown field"),
+        (
+            ["--candidates", "free.csv"],
+            "column contact.stiffness_n_m1_5 = 1 column must be left out of a table of candidates",
+        ),
+        (["--candidates", "heavy.csv"], "the candidates, line 3, striker.mass_kg = -0.05 is not allowed"),
     ] {
         let arguments = ["identify", "data.csv", "--scene", "scene.json", "--free", "contact.stiffness_n_m1_5"];
         let output = run(folder.path(), &[&arguments[..], &options].concat());

@@ -2,9 +2,9 @@
 
 use fitting::{Information, Profile, Start};
 
-use super::data::Data;
+use super::data::{Data, FORCE};
 use super::derivative::Prediction;
-use super::design::design;
+use super::design::{Measured, design};
 use super::determined::undetermined;
 use super::forward::Model;
 use super::free::Free;
@@ -69,6 +69,9 @@ pub fn identify(scene: &Scene, data: &Data, free: &[Free], request: &Request) ->
     let coordinates = free.iter().map(|free| free.parameter(&tree)).collect::<Result<Vec<_>, _>>()?;
     let start: Vec<f64> = coordinates.iter().map(|parameter| parameter.start).collect();
     let model = Model::new(&tree, data, free, &start)?;
+    if let Some(candidates) = &request.candidates {
+        model.require_candidates(candidates, &start)?;
+    }
     let mut work = Work::new(&model, coordinates)?;
     let (starts, converged) = work.search(request.starts)?;
     let z = quantiles(&work, request.level)?;
@@ -151,14 +154,20 @@ impl Work<'_> {
             (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
         });
         let noise = self.noise(&residuals);
+        let (predictions, records) = self.beside(&rows, &information);
         let candidates = request.candidates.as_ref().map_or_else(Vec::new, |candidates| {
-            let measured: Vec<(Quantity, f64)> = noise
-                .iter()
-                .filter_map(|noise| Some((Quantity::named(&noise.quantity)?, noise.standard_deviation)))
-                .collect();
+            let of_quantity = |noise: &Noise| Some((Quantity::named(&noise.quantity)?, noise.standard_deviation));
+            // a force history would be sampled as the first of those that were measured
+            let of_force = |record: &RecordFit| {
+                let sd = noise.iter().find(|noise| noise.quantity == FORCE)?.standard_deviation;
+                Some((record.samples[0].iter().map(|t| t - record.offset_s).collect(), sd))
+            };
+            let measured = Measured {
+                quantities: noise.iter().filter_map(of_quantity).collect(),
+                force: records.first().and_then(of_force),
+            };
             design(self.model, candidates, &self.coordinates, &self.parameters, &information, &measured)
         });
-        let (predictions, records) = self.beside(&rows, &information);
         let known = self.known.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let grazes = known.iter().flat_map(|known| &known.rows).zip(&data.rows);
         let grazing = grazes.filter(|(found, _)| found.as_ref().is_none_or(|found| found.grazes));
@@ -166,7 +175,7 @@ impl Work<'_> {
             parameters: (0..n).map(identified).collect(),
             level: request.level,
             correlation,
-            undetermined: undetermined(&information, &fields),
+            undetermined: undetermined(&information, &self.coordinates, &self.parameters),
             count: self.measured.len(),
             degrees_of_freedom: self.freedom,
             sum_of_squares: self.sum_of_squares,

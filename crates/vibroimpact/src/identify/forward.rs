@@ -90,15 +90,34 @@ impl<'a> Model<'a> {
         }
         model.modes = most;
         // an impact that cannot be resolved is reported before the search begins
-        for row in &data.rows {
-            model.impact(row, start, &mut kept).map_err(|fault| in_line(row, fault))?;
-        }
+        model.require_impacts(start, &mut kept)?;
         let begun = Instant::now();
         data.rows.iter().for_each(|row| drop(model.course(row, start, &mut kept)));
         if begun.elapsed() < WORTH_A_THREAD {
             model.kept.truncate(1);
         }
         Ok(model)
+    }
+
+    /// Checks that every row is an impact on the structure.
+    fn require_impacts(&self, parameters: &[f64], kept: &mut Kept) -> Result<(), InvalidInput> {
+        let valid = |row: &Row| {
+            let checked = self.scene(row, parameters)?.check().and_then(|()| self.impact(row, parameters, kept));
+            checked.map(drop).map_err(|fault| in_line(row, fault))
+        };
+        self.data.rows.iter().try_for_each(valid)
+    }
+
+    /// Checks a table of candidates: its fields are those of the scene that are not free, and every row is an impact.
+    pub fn require_candidates(&self, candidates: &Data, parameters: &[f64]) -> Result<(), InvalidInput> {
+        let is_free = |field: &&FieldPath| self.free.iter().any(|free| free.field == field.to_string());
+        if let Some(field) = candidates.fields.iter().find(is_free) {
+            let allowed = "left out of a table of candidates: the field is free";
+            return Err(InvalidInput::new(format!("column {field}"), "1 column", allowed));
+        }
+        self.for_table(candidates)
+            .require_impacts(parameters, &mut Kept::default())
+            .map_err(|fault| fault.in_place("the candidates"))
     }
 
     /// The same impacts for another table, with the number of modes that was chosen.
@@ -130,8 +149,7 @@ impl<'a> Model<'a> {
                 set(&path, json!(value));
             }
         }
-        faults?;
-        Scene::from_value(&tree).map_err(|fault| in_line(row, fault))
+        faults.and_then(|()| Scene::from_value(&tree)).map_err(|fault| in_line(row, fault))
     }
 
     /// The impact of a row.

@@ -84,9 +84,11 @@ fn history(record: &RecordFit) -> Panel {
         .with(Series::line(time, model).colour(Colour::Blue).label("model"))
 }
 
+/// The square root of the rise, which is linear in the coordinate for a linear model, so that a few points show it.
 fn profile(curve: &ProfileCurve) -> Panel {
-    Panel::new(Axis::new(curve.field.as_str()), Axis::new("rise of S"))
+    let root: Vec<f64> = curve.rise.iter().map(|rise| rise.max(0.0).sqrt()).collect();
+    Panel::new(Axis::new(curve.field.as_str()), Axis::new("√ rise of S"))
         .height(130.0)
-        .with(Series::line_points(&curve.values, &curve.rise, Marker::Dot).colour(Colour::Blue))
-        .with(Series::horizontal_rule(curve.limit))
+        .with(Series::line_points(&curve.values, &root, Marker::Dot).colour(Colour::Blue))
+        .with(Series::horizontal_rule(curve.limit.sqrt()))
 }

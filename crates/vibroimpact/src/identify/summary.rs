@@ -149,10 +149,11 @@ pub struct Candidate {
     pub line: u64,
     /// Its fields.
     pub fields: BTreeMap<String, serde_json::Value>,
-    /// Volume of the confidence region with it over that without; the smaller, the more informative.
-    pub volume_ratio: f64,
-    /// Standard deviation of each parameter's coordinate with it over that without.
-    pub sd_ratios: Vec<f64>,
+    /// Volume of the confidence region with it over that without; the smaller, the more informative. Null if its impact cannot be
+    /// resolved, or lacks a quantity that was measured.
+    pub volume_ratio: Option<f64>,
+    /// Standard deviation of each parameter's coordinate with it over that without; null likewise.
+    pub sd_ratios: Option<Vec<f64>>,
 }
 
 /// A likelihood profile.

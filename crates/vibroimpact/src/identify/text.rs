@@ -2,31 +2,42 @@
 
 use std::fmt::Write;
 
+use serde_json::Value;
+
 use super::summary::{Identification, Identified};
-use crate::text::significant;
-use crate::text::{filled, quantity};
+use crate::text::{counted, filled, printable, quantity, significant};
 
 /// Lines are at most this long.
 const WIDTH: usize = 100;
+/// Widths of the columns of labels, fields and values; a longer entry is followed by two spaces.
+const LABELS: usize = 22;
+const FIELDS: usize = 34;
+const VALUES: usize = 14;
 /// Largest number of candidates and lines that are listed; the others are counted.
 const LISTED: usize = 10;
 /// Residuals beyond this many standard deviations are listed.
 const FAR: f64 = 3.0;
+/// A misfit at least this improbably small shows that the stated standard deviations are too large.
+const TOO_SMALL: f64 = 0.999;
 
 /// Parameters with their intervals, combinations that the data do not determine, the tests of the model, and the most informative
 /// experiments.
 pub fn text(found: &Identification) -> String {
     let mut text = String::new();
     let level = significant(100.0 * found.level, 3);
-    let _ = writeln!(text, "  {:<36}{:<16}{level} % interval", "field", "value");
+    let fields = found.parameters.iter().map(|parameter| parameter.field.chars().count()).fold(FIELDS, usize::max);
+    let mut line = |field: &str, value: &str, interval: &str| {
+        let _ = writeln!(text, "  {field:<fields$}  {value:<VALUES$}  {interval}");
+    };
+    line("field", "value", &format!("{level} % interval"));
     for parameter in &found.parameters {
-        let _ =
-            writeln!(text, "  {:<36}{:<16}{}", parameter.field, significant(parameter.value, 5), interval(parameter));
+        line(&parameter.field, &significant(parameter.value, 5), &interval(parameter));
     }
     text.push('\n');
     let mut say = |name: &str, told: &str| {
-        let lines = filled(told, |line| line.chars().count() + 24 <= WIDTH);
-        let _ = writeln!(text, "  {name:<22}{}", lines.join(&format!("\n{}", " ".repeat(24))));
+        let lines = filled(told, |line| line.chars().count() + LABELS + 2 <= WIDTH);
+        let gap = if name.chars().count() < LABELS { "" } else { "  " };
+        let _ = writeln!(text, "  {name:<LABELS$}{gap}{}", lines.join(&format!("\n{}", " ".repeat(LABELS + 2))));
     };
     for open in &found.undetermined {
         say("not determined", &open.text);
@@ -34,8 +45,8 @@ pub fn text(found: &Identification) -> String {
     for noise in &found.noise {
         let stated = if noise.stated { "stated" } else { "estimated from the misfit" };
         let told = format!(
-            "{} values, standard deviation {} ({stated}), misfit {} rms",
-            noise.count,
+            "{}, standard deviation {} ({stated}), misfit {} rms",
+            counted(noise.count as u64, "value", "values"),
             significant(noise.standard_deviation, 3),
             significant(noise.rms, 3)
         );
@@ -45,9 +56,8 @@ pub fn text(found: &Identification) -> String {
     for record in &found.records {
         say(&record.file, &format!("first touch at {} by its clock", quantity(record.offset_s, "s")));
     }
-    let modes =
-        found.modes.map_or("all modes listed".to_owned(), |modes| format!("{modes} modes, the same for every row"));
-    say("model", &modes);
+    let modes = |count| counted(count as u64, "mode", "modes");
+    say("model", &(found.modes.map_or("all modes listed".to_owned(), modes) + ", the same for every row"));
     search(found, &mut say);
     if !found.candidates.is_empty() {
         text.push('\n');
@@ -65,7 +75,8 @@ fn interval(parameter: &Identified) -> String {
         (None, Some(high)) => format!("below {}", number(high)),
         (None, None) => "not determined by these data".to_owned(),
     };
-    match (parameter.bent, parameter.covariance_interval) {
+    let open = low.is_none() && high.is_none();
+    match (parameter.bent && !open, parameter.covariance_interval) {
         (true, Some([low, high])) => format!("{told} (profile; covariance {} to {})", number(low), number(high)),
         _ => told,
     }
@@ -73,18 +84,25 @@ fn interval(parameter: &Identified) -> String {
 
 fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {
     if found.lack_of_fit.is_empty() {
-        say("fit", "cannot be judged: the table states no standard deviations, and repeats no row");
+        let reason = if found.degrees_of_freedom == 0 {
+            "there are as many parameters as measured values"
+        } else {
+            "the table states no standard deviations, and repeats no row"
+        };
+        say("fit", &format!("cannot be judged: {reason}"));
     }
     for test in &found.lack_of_fit {
         let judged = if test.noticed {
             "THE MODEL DOES NOT FIT: do not trust the values and intervals above"
+        } else if test.test == "chi-square" && test.probability > TOO_SMALL {
+            "the misfit is smaller than the stated noise: the standard deviations are probably too large"
         } else {
             "the misfit is one of noise"
         };
         let probability =
             if test.probability < 1e-4 { "below 0.0001".to_owned() } else { significant(test.probability, 2) };
         let of = if test.test == "chi-square" {
-            format!(" with {} degrees of freedom", found.degrees_of_freedom)
+            format!(" with {}", counted(found.degrees_of_freedom as u64, "degree of freedom", "degrees of freedom"))
         } else {
             String::new()
         };
@@ -106,33 +124,52 @@ fn search(found: &Identification, say: &mut impl FnMut(&str, &str)) {
     let near = |sum: Option<f64>| sum.is_some_and(|sum| sum <= 1.01 * best + 1e-9);
     let same = found.starts.iter().filter(|start| near(start.robust_sum)).count();
     if found.starts.len() > 1 {
-        say("search", &format!("{same} of {} starting points lead to the least robust sum", found.starts.len()));
+        let lead = if same == 1 { "leads" } else { "lead" };
+        say("search", &format!("{same} of {} starting points {lead} to the least robust sum", found.starts.len()));
     }
     if !found.converged {
         say("search", "NOT CONVERGED: these are the best values that were met");
     }
-    if !found.grazing_lines.is_empty() {
+    if let [first, others @ ..] = &found.grazing_lines[..] {
         let lines: Vec<String> = found.grazing_lines.iter().take(LISTED).map(u64::to_string).collect();
-        let told = format!(
-            "the impact of line {} grazes: its number of contacts changes nearby, and the sum of squares has a kink",
-            lines.join(", ")
-        );
-        say("rough", &told);
+        let more = found.grazing_lines.len().saturating_sub(LISTED);
+        let told = match (others, more) {
+            ([], _) => format!("the impact of line {first} grazes"),
+            (_, 0) => format!("the impacts of lines {} graze", lines.join(", ")),
+            _ => format!("the impacts of lines {} and of {more} others graze", lines.join(", ")),
+        };
+        say("rough", &(told + ": the number of contacts changes nearby, and the sum of squares has a kink"));
     }
 }
 
 fn candidates(found: &Identification, text: &mut String) {
     let _ = writeln!(text, "  next experiment: volume of the confidence region with it, over that without");
-    for candidate in found.candidates.iter().take(LISTED) {
-        let fields: Vec<String> = candidate.fields.iter().map(|(field, value)| format!("{field} = {value}")).collect();
+    let resolved: Vec<_> =
+        found.candidates.iter().filter_map(|one| one.volume_ratio.map(|ratio| (one, ratio))).collect();
+    for (candidate, ratio) in resolved.iter().take(LISTED) {
+        let told = |(field, value): (&String, &Value)| match value {
+            Value::String(name) => format!("{field} = {}", printable(name)),
+            other => format!("{field} = {}", other.as_f64().map_or(other.to_string(), |value| significant(value, 6))),
+        };
+        let fields: Vec<String> = candidate.fields.iter().map(told).collect();
+        let line = format!("line {}", candidate.line);
+        let _ = writeln!(text, "  {line:<LABELS$}{:<12}{}", significant(*ratio, 3), fields.join(", "));
+    }
+    if resolved.len() > LISTED {
         let _ = writeln!(
             text,
-            "  {:<22}{}",
-            format!("line {}", candidate.line),
-            format_args!("{:<12}{}", significant(candidate.volume_ratio, 3), fields.join(", "))
+            "  and {} less informative",
+            counted((resolved.len() - LISTED) as u64, "that is", "that are")
         );
     }
-    if found.candidates.len() > LISTED {
-        let _ = writeln!(text, "  and {} that are less informative", found.candidates.len() - LISTED);
+    let lost: Vec<String> =
+        found.candidates.iter().filter(|one| one.volume_ratio.is_none()).map(|one| one.line.to_string()).collect();
+    if !lost.is_empty() {
+        let lines = if lost.len() == 1 { "line" } else { "lines" };
+        let _ = writeln!(
+            text,
+            "  not rated: {lines} {}, whose impact lacks a measured quantity or cannot be resolved",
+            lost.join(", ")
+        );
     }
 }

@@ -326,7 +326,7 @@ fn settings() -> Settings {
 }
 
 /// `J - q q^T J` for the direction of `q`, which need not be a unit vector; `rows` has a row for each entry of `q`.
-fn project_out(rows: &mut [f64], q: &[f64], n: usize) {
+pub(super) fn project_out(rows: &mut [f64], q: &[f64], n: usize) {
     let square: f64 = q.iter().map(|q| q * q).sum();
     if square <= 0.0 {
         return;
