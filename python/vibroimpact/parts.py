@@ -118,11 +118,14 @@ class Point(Part):
     """A point of a structure that is given by its modes.
 
     ``shape``: Shapes at the point: mass-normalised (kg^-1/2), or as they go with ``modal_mass_kg``.
+    ``residual_compliance_m_n``: Static compliance (m/N) of the modes beyond the list alone, in place of
+        ``static_compliance_m_n``. It stays the same if the listed modes vary.
     ``static_compliance_m_n``: Static compliance at the point (m/N) of the whole elastic structure, modes beyond the list
         included; needed for ``"residual_compliance": true`` only.
     """
 
     shape: Sequence[float] | NDArray[np.float64]
+    residual_compliance_m_n: float | None = None
     static_compliance_m_n: float | None = None
 
 
@@ -280,7 +283,9 @@ class Modal(Part):
     ``damping_ratios``: Damping ratios, one for each mode; all 0 when left out.
     ``modal_mass_kg``: Modal masses that go with the shapes (kg), one for each mode. When left out, shapes are mass-
         normalised: 1 kg each.
-    ``points``: Points of the structure by their names, in place of ``shape_at_location`` and ``static_compliance_m_n``.
+    ``points``: Points of the structure by their names, in place of ``shape_at_location`` and the compliance there.
+    ``residual_compliance_m_n``: Static compliance (m/N) of the modes beyond the list alone, in place of
+        ``static_compliance_m_n``. It stays the same if the listed modes vary.
     ``shape_at_location``: Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with ``modal_mass_kg``.
     ``static_compliance_m_n``: Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond
         the list included; needed for ``"residual_compliance": true`` only.
@@ -292,6 +297,7 @@ class Modal(Part):
     damping_ratios: Sequence[float] | NDArray[np.float64] | None = None
     modal_mass_kg: Sequence[float] | NDArray[np.float64] | None = None
     points: Mapping[str, Point] | None = None
+    residual_compliance_m_n: float | None = None
     shape_at_location: Sequence[float] | NDArray[np.float64] | None = None
     static_compliance_m_n: float | None = None
 

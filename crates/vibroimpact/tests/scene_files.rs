@@ -392,6 +392,35 @@ fn points_of_a_modal_structure_are_named() {
 }
 
 #[test]
+fn a_residual_compliance_is_that_of_the_modes_beyond_the_list() {
+    // The whole compliance is that of the listed modes, 2^2/(4 100^2) + 1/400^2, and the residual one.
+    let (listed, residual) = (1e-4 + 6.25e-6, 3e-6);
+    let of = |field: &str, value: f64| {
+        json!({
+            "structure": { "kind": "modal", "omega_rad_s": [100, 400], "modal_mass_kg": [4, 1],
+                "points": { "tip": { "shape": [2, -1], (field): value } } },
+            "striker": { "mass_kg": 0.1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e6 },
+            "location": "tip", "residual_compliance": true
+        })
+    };
+    let modes = |scene: &Value| Scene::from_value(scene).unwrap().structure().unwrap().modes;
+    let (by_residual, by_whole) =
+        (modes(&of("residual_compliance_m_n", residual)), modes(&of("static_compliance_m_n", listed + residual)));
+    assert!(by_residual.len() > 2 && by_residual.len() == by_whole.len());
+    for (one, other) in by_residual.iter().zip(&by_whole) {
+        assert!((one.omega_rad_s / other.omega_rad_s - 1.0).abs() < 1e-9 && (one.shape - other.shape).abs() < 1e-9);
+    }
+    let mut both = of("residual_compliance_m_n", residual);
+    both["structure"]["points"]["tip"]["static_compliance_m_n"] = json!(1);
+    for (spoilt, told) in [
+        (both, "structure.points.tip.residual_compliance_m_n = 3e-6 must be left out"),
+        (of("residual_compliance_m_n", -1.0), "structure.points.tip.residual_compliance_m_n = -1.0 is not allowed"),
+    ] {
+        assert!(fault(&spoilt).to_string().starts_with(told), "{}", fault(&spoilt));
+    }
+}
+
+#[test]
 fn motion_before_the_impact_can_be_stated_in_two_ways() {
     let scene = named("moving-beam");
     let by_place = scene.impact().unwrap().start.unwrap();

@@ -77,6 +77,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("shape", "a list of finite numbers, one a mode"),
     ("shape[]", "a finite number"),
     ("static_compliance_m_n", NOT_NEGATIVE),
+    ("residual_compliance_m_n", NOT_NEGATIVE),
     ("file", "the path of a table in the folder of the scene or below, without .."),
     ("static_compliances_m_n", "an object with a number for each named point"),
     ("inclination_deg", "a number from 0 to 90"),

@@ -47,7 +47,10 @@ pub struct Modal {
     /// Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond the list
     /// included; needed for `"residual_compliance": true` only.
     pub static_compliance_m_n: Option<f64>,
-    /// Points of the structure by their names, in place of `shape_at_location` and `static_compliance_m_n`.
+    /// Static compliance (m/N) of the modes beyond the list alone, in place of `static_compliance_m_n`. It stays the same if the
+    /// listed modes vary.
+    pub residual_compliance_m_n: Option<f64>,
+    /// Points of the structure by their names, in place of `shape_at_location` and the compliance there.
     #[serde(default, deserialize_with = "named_objects", skip_serializing_if = "BTreeMap::is_empty")]
     pub points: BTreeMap<String, Point>,
 }
@@ -61,14 +64,29 @@ pub struct Point {
     /// Static compliance at the point (m/N) of the whole elastic structure, modes beyond the list included; needed for
     /// `"residual_compliance": true` only.
     pub static_compliance_m_n: Option<f64>,
+    /// Static compliance (m/N) of the modes beyond the list alone, in place of `static_compliance_m_n`. It stays the same if the
+    /// listed modes vary.
+    pub residual_compliance_m_n: Option<f64>,
 }
 
-/// The shapes and the compliance at one location, and their path in the scene.
+/// The shapes and the compliances at one location, and their path in the scene.
 struct Seen<'a> {
     shape: &'a [f64],
-    shape_field: Path,
     static_compliance_m_n: Option<f64>,
-    compliance_field: Path,
+    residual_compliance_m_n: Option<f64>,
+    /// Path of the object that contains the compliances and the shape.
+    place: Path,
+    shape_name: &'static str,
+}
+
+impl Seen<'_> {
+    fn field(&self, name: &str) -> Path {
+        Path::from(name).within(self.place.clone())
+    }
+
+    fn shape_field(&self) -> Path {
+        self.field(self.shape_name)
+    }
 }
 
 impl Modal {
@@ -104,9 +122,10 @@ impl Modal {
         match (location, self.points.is_empty()) {
             (None, true) => Ok(Seen {
                 shape: &self.shape_at_location,
-                shape_field: "shape_at_location".into(),
                 static_compliance_m_n: self.static_compliance_m_n,
-                compliance_field: "static_compliance_m_n".into(),
+                residual_compliance_m_n: self.residual_compliance_m_n,
+                place: Path::default(),
+                shape_name: "shape_at_location",
             }),
             (Some(name), true) => {
                 let allowed = "left out: the modal structure has no points, only shape_at_location";
@@ -118,6 +137,9 @@ impl Modal {
             (_, false) if self.static_compliance_m_n.is_some() => {
                 left_out("static_compliance_m_n", number(self.static_compliance_m_n.unwrap_or_default()))
             }
+            (_, false) if self.residual_compliance_m_n.is_some() => {
+                left_out("residual_compliance_m_n", number(self.residual_compliance_m_n.unwrap_or_default()))
+            }
             (name, false) => {
                 let names = || format!("one of the structure's points, {}", shown(self.points.keys()));
                 let name = name.ok_or_else(|| InvalidInput::missing("location", names()))?;
@@ -128,9 +150,10 @@ impl Modal {
                 let point = self.points.get(name).ok_or_else(missing)?;
                 Ok(Seen {
                     shape: &point.shape,
-                    shape_field: ["points", name, "shape"].into(),
                     static_compliance_m_n: point.static_compliance_m_n,
-                    compliance_field: ["points", name, "static_compliance_m_n"].into(),
+                    residual_compliance_m_n: point.residual_compliance_m_n,
+                    place: ["points", name].into(),
+                    shape_name: "shape",
                 })
             }
         }
@@ -145,7 +168,7 @@ impl Modal {
     fn modes_of(&self, seen: &Seen) -> Result<Vec<Mode>, InvalidInput> {
         let listed = self.omega_rad_s.len();
         for (field, length, needed) in [
-            (&seen.shape_field, seen.shape.len(), true),
+            (&seen.shape_field(), seen.shape.len(), true),
             (&"damping_ratios".into(), self.damping_ratios.len(), false),
             (&"modal_mass_kg".into(), self.modal_mass_kg.len(), false),
         ] {
@@ -174,7 +197,7 @@ impl Modal {
     fn in_lists(&self, seen: &Seen, fault: InvalidInput) -> InvalidInput {
         let [_, Step::Index(k), Step::Field(quantity)] = fault.field.steps() else { return fault };
         let (list, values) = match quantity.as_str() {
-            "shape" => (seen.shape_field.clone(), seen.shape),
+            "shape" => (seen.shape_field(), seen.shape),
             "damping_ratio" => ("damping_ratios".into(), self.damping_ratios.as_slice()),
             _ => ("omega_rad_s".into(), self.omega_rad_s.as_slice()),
         };
@@ -182,20 +205,35 @@ impl Modal {
         InvalidInput { field, value, ..fault }
     }
 
-    /// Whether the static compliance at a point is stated, with any value.
+    /// Whether a compliance at a point is stated, with any value.
     pub(crate) fn gives_compliance(&self, location: Option<&str>) -> bool {
-        self.seen_from(location).is_ok_and(|seen| seen.static_compliance_m_n.is_some())
+        let given = |seen: Seen| seen.static_compliance_m_n.or(seen.residual_compliance_m_n).is_some();
+        self.seen_from(location).is_ok_and(given)
     }
 
+    /// The static compliance at a point, stated or that of the listed modes and the residual one.
     pub(super) fn static_compliance_m_n(&self, location: Option<&str>) -> Result<f64, InvalidInput> {
         let seen = self.seen_from(location)?;
-        let field = seen.compliance_field.within("structure");
+        let field = |name: &str| seen.field(name).within("structure");
         let allowed = || format!("needed for residual_compliance: {}", fields::NOT_NEGATIVE);
-        let value = seen.static_compliance_m_n.ok_or_else(|| InvalidInput::missing(field.clone(), allowed()))?;
+        let (name, value, listed) = match (seen.static_compliance_m_n, seen.residual_compliance_m_n) {
+            (Some(whole), None) => ("static_compliance_m_n", whole, 0.0),
+            (None, Some(residual)) => {
+                let compliance = |mode: &Mode| {
+                    if mode.omega_rad_s > 0.0 { (mode.shape / mode.omega_rad_s).powi(2) } else { 0.0 }
+                };
+                ("residual_compliance_m_n", residual, self.modes(location)?.iter().map(compliance).sum())
+            }
+            (Some(_), Some(residual)) => {
+                let allowed = "left out in the presence of static_compliance_m_n, which contains it";
+                return Err(InvalidInput::new(field("residual_compliance_m_n"), number(residual), allowed));
+            }
+            (None, None) => return Err(InvalidInput::missing(field("static_compliance_m_n"), allowed())),
+        };
         if value >= 0.0 && value.is_finite() {
-            Ok(value)
+            Ok(value + listed)
         } else {
-            Err(InvalidInput::new(field, number(value), allowed()))
+            Err(InvalidInput::new(field(name), number(value), allowed()))
         }
     }
 }

@@ -106,7 +106,7 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
             return Err(InvalidInput::missing(format!("the name of column {}", place + 1), NEEDED));
         }
         let shape = list(Some(place), name, ("a finite number", |_| true))?;
-        modal.points.insert(name.to_owned(), Point { shape, static_compliance_m_n: None });
+        modal.points.insert(name.to_owned(), Point { shape, ..Point::default() });
     }
     if modal.points.is_empty() {
         return Err(InvalidInput::missing("a column with the shapes at a point", NEEDED));
