@@ -116,6 +116,92 @@ def test_a_free_structure_has_the_compliance_of_its_elastic_modes():
     assert found.static_compliances_m_n["end"] == pytest.approx(exact, rel=1e-10)
 
 
+def hermite_beam(elements, fixed):
+    """The cantilever of the files, or the same beam without its clamp, by Hermite's cubic elements."""
+    h = 0.5 / elements
+    bending, mass = 2.1e11 * 0.02 * 0.01**3 / 12, 7850 * 0.02 * 0.01
+    stiffness = bending / h**3 * np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+    inertia = mass * h / 420 * np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+    scale = np.array([1.0, h, 1.0, h])
+    k, m = (np.zeros((2 * elements + 2, 2 * elements + 2)) for _ in range(2))
+    for e in range(elements):
+        here = slice(2 * e, 2 * e + 4)
+        k[here, here] += scale[:, None] * stiffness * scale
+        m[here, here] += scale[:, None] * inertia * scale
+    first = 2 if fixed else 0
+    return k[first:, first:], m[first:, first:]
+
+
+def test_rigid_body_modes_are_told_by_the_rounding_of_the_matrices():
+    pytest.importorskip("scipy")
+    # The 60th eigenvalue is 1.5e8 times the first, which is elastic all the same.
+    folder = FILES / "matrices"
+    many = structures.from_matrices(folder / "stiffness.mtx", folder / "mass.mtx", {"tip": 78}, 60)
+    assert many.omega_rad_s[0] == pytest.approx(209.988, rel=1e-5)
+    assert many.static_compliances_m_n["tip"] == pytest.approx(0.5**3 / (3 * 350), rel=1e-9)
+    # Fine meshes, clamped and free; of the free beam the elastic compliance at its end is l^3/(105 EI).
+    for elements in (40, 600):
+        k, m = hermite_beam(elements, fixed=True)
+        clamped = structures.from_matrices(k, m, {"tip": len(k) - 2}, 6)
+        assert clamped.omega_rad_s[0] == pytest.approx(209.988, rel=1e-5)
+        assert clamped.static_compliances_m_n["tip"] == pytest.approx(0.5**3 / (3 * 350), rel=1e-4)
+        k, m = hermite_beam(elements, fixed=False)
+        free = structures.from_matrices(k, m, {"end": 0}, 6)
+        assert list(free.omega_rad_s[:2]) == [0, 0]
+        assert free.omega_rad_s[2] == pytest.approx(1336.21, rel=1e-5)
+        assert free.static_compliances_m_n["end"] == pytest.approx(0.5**3 / (105 * 350), rel=1e-4)
+    # Entries with five digits: the rigid-body modes are lost in their rounding, unless that is stated.
+    rounded = np.vectorize(lambda value: float(f"{value:.4e}"))
+    k, m = (rounded(matrix) for matrix in hermite_beam(7, fixed=False))
+    told = structures.from_matrices(k, m, {"end": 0}, 6, rounding=1e-5)
+    assert list(told.omega_rad_s[:2]) == [0, 0] and told.omega_rad_s[2] == pytest.approx(1336.2, rel=1e-2)
+    with pytest.raises(ValueError, match="count = 2 is not allowed: more than the 2 rigid-body modes"):
+        structures.from_matrices(k, m, {"end": 0}, 2, rounding=1e-5)
+    with pytest.raises(ValueError, match="rounding = 0"):
+        structures.from_matrices(k, m, {"end": 0}, 2, rounding=0)
+
+
+def test_rigid_body_modes_of_a_program_are_told_by_a_gap():
+    from vibroimpact.structures._structure import frequencies
+
+    # CalculiX's eigenvalues of the free beam, with their rounding of either sign.
+    rigid = [-0.9765535e-04, -0.5620750e-04, -0.3033299e-04, -0.1109988e-04, 0.3413387e-04, 0.1806336e-03]
+    found = frequencies("free.dat", np.array([*rigid, 0.1781657e07, 0.7066366e07]))
+    assert list(found[:6]) == [0] * 6 and found[6] == pytest.approx(1334.787, rel=1e-6)
+    # A hundred modes of a cantilever, whose eigenvalues grow with the fourth power.
+    many = (math.pi * (np.arange(1, 101) - 0.5)) ** 4
+    assert frequencies("many.dat", many)[0] == pytest.approx(math.sqrt(many[0]))
+    # A beam on soft strings, 1 Hz below 300 Hz.
+    hung = (2 * math.pi * np.array([1.0, 1.5, 300, 800])) ** 2
+    assert frequencies("hung.dat", hung) == pytest.approx(np.sqrt(hung))
+    # A structure that carries a static load has no rigid-body modes.
+    assert frequencies("soft.dat", np.array([1e-4, 1e6]), supported=True)[0] == pytest.approx(0.01)
+    with pytest.raises(ValueError, match="the eigenvalue -400.0 is not allowed"):
+        frequencies("buckled.dat", np.array([-400.0, 5e4, 1e6]))
+
+
+def test_a_preload_is_not_taken_for_a_mode(tmp_path):
+    # The files of a job with a static step before that of the modes.
+    folder = FILES / "calculix"
+    static = (folder / "cantilever-tip.frd").read_text()
+    modes = (folder / "cantilever.frd").read_text()
+    first, end = static.index("    1PSTEP"), static.rindex(" 9999")
+    place = modes.index("    1PSTEP")
+    preloaded = tmp_path / "preloaded.frd"
+    preloaded.write_text(modes[:place] + static[first:end] + modes[place:])
+    points = {"tip": (293, UP), "middle": (149, UP)}
+    found = structures.from_calculix(folder / "cantilever.dat", preloaded, points)
+    assert np.array_equal(found.shapes["tip"], calculix().shapes["tip"])
+    # Static displacements of several steps are not those of the load alone, and modes are no static displacements.
+    several = tmp_path / "several.frd"
+    several.write_text(static[:end] + static[first:])
+    for file, count in ((several, 2), (folder / "cantilever.frd", 0)):
+        with pytest.raises(ValueError, match=f"contains {count} static displacements"):
+            structures.from_calculix(folder / "cantilever.dat", preloaded, points, {"tip": file})
+    with pytest.raises(ValueError, match="contains 0 shapes"):
+        structures.from_calculix(folder / "cantilever.dat", folder / "cantilever-tip.frd", points)
+
+
 def test_units_of_a_model_are_converted_to_si():
     pytest.importorskip("scipy")
     # One mass on a spring, in millimetres and tonnes: N/mm and t.
@@ -138,7 +224,14 @@ def test_measured_modes_have_their_uncertainty(tmp_path):
     )
     structure = structures.from_table(table, {"tip": 1.19e-4})
     uncertain = structure.uncertain("tip")
-    assert uncertain["structure.omega_rad_s[1]"]["normal"] == pytest.approx([2 * math.pi * 209.4, 2 * math.pi * 0.3])
+    # Lognormal distributions, which have no negative numbers, of the measured mean and standard deviation.
+    for field, mean, sd in [
+        ("omega_rad_s[1]", 2 * math.pi * 209.4, 2 * math.pi * 0.3),
+        ("damping_ratios[0]", 0.004, 0.0005),
+    ]:
+        median, log_sd = uncertain[f"structure.{field}"]["lognormal"]
+        assert median * math.exp(log_sd**2 / 2) == pytest.approx(mean, rel=1e-12)
+        assert mean * math.sqrt(math.expm1(log_sd**2)) == pytest.approx(sd, rel=1e-12)
     assert uncertain["structure.points.tip.shape[1]"]["normal"] == [-2.26, 0.03]
     assert len(uncertain) == 6
     scene = own_beam(0.5) | {"location": "tip"}
@@ -146,7 +239,36 @@ def test_measured_modes_have_their_uncertainty(tmp_path):
     structure.write_sweep(tmp_path / "sweep.json", scene)
     sweep = json.loads((tmp_path / "sweep.json").read_text())
     assert sweep["uncertain"] == uncertain
+    # The compliance of the modes that are not listed is fixed, and the static one varies with the listed modes.
+    (point,) = (point for name, point in sweep["scene"]["structure"]["points"].items() if name == "tip")
+    listed = (2.26 / (2 * math.pi * 33.4)) ** 2 + (2.26 / (2 * math.pi * 209.4)) ** 2
+    assert point["residual_compliance_m_n"] == pytest.approx(1.19e-4 - listed) and "static_compliance_m_n" not in point
     assert 0 < vibroimpact.simulate(sweep["scene"])["restitution"] < 1
+    found = vibroimpact.sweep(sweep | {"sampling": {"draws": 64}})
+    assert set(found["error"]) == {""}
+    with pytest.raises(ValueError, match="static compliance of tip = 0.0001 is not allowed: not less than"):
+        structures.from_table(table, {"tip": 1e-4}).write_sweep(tmp_path / "less.json", scene)
+    with pytest.raises(ValueError, match="location = 'end'"):
+        structure.uncertain("end")
+    with pytest.raises(ValueError, match="standard_deviations are missing"):
+        matrices().write_sweep(tmp_path / "exact.json", scene)
+    structure.damping_ratios[0] = 0
+    with pytest.raises(ValueError, match=r"damping_ratios\[0\] = 0.0 with the standard deviation 0.0005"):
+        structure.uncertain()
+
+
+def test_a_sweep_takes_many_measured_modes(tmp_path):
+    # Damping ratios with large standard deviations, of which a normal distribution has negative draws.
+    rows = "".join(f"{30.0 * k**2},{0.3 * k},0.004,0.003,{2 * (-1) ** k},0.05\n" for k in range(1, 11))
+    (tmp_path / "test.csv").write_text("frequency_hz,frequency_hz_sd,damping_ratio,damping_ratio_sd,tip,tip_sd\n" + rows)
+    structure = structures.from_table(tmp_path / "test.csv", {"tip": 1.3e-4})
+    scene = own_beam(0.5) | {"location": "tip"}
+    del scene["location_m"]
+    structure.write_sweep(tmp_path / "sweep.json", scene)
+    sweep = json.loads((tmp_path / "sweep.json").read_text()) | {"sampling": {"draws": 256}}
+    assert len(sweep["uncertain"]) == 30
+    found = vibroimpact.sweep(sweep)
+    assert len(found["error"]) == 256 and set(found["error"]) == {""}
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,11 @@
 """Modes and static compliances from stiffness and mass matrices.
 
 With ``K`` and ``M`` the pencil ``K x = omega^2 M x`` is solved for its lowest modes by Lanczos' method with a shift
-(scipy's ``eigsh``). The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``. For a structure that
-moves freely, it is that of the elastic modes alone: the load is balanced by inertia, ``g = f - M R R^T f`` with the
-mass-normalised rigid-body modes ``R``, and the rigid-body part of the solution is removed.
+(scipy's ``eigsh``), and the eigenvalue of each vector is its Rayleigh quotient ``x^T K x``. The rounding of the entries
+of ``K`` by a share ``e`` changes that by at most ``e |x|^T |K| |x|``; a mode whose eigenvalue is of this size is one of a rigid
+body. The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``. For a structure that moves freely, it is
+that of the elastic modes alone: the load is balanced by inertia, ``g = f - M R R^T f`` with the mass-normalised rigid-body
+modes ``R``, and the solution of ``K x + M R y = g`` is the one with ``R^T M x = 0``.
 """
 
 from __future__ import annotations
@@ -17,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from ._structure import Floats, Structure, units
 
-# An eigenvalue below this share of the largest one computed is that of a rigid-body mode.
-_RIGID = 1e-8
+# Eigenvalues of rigid-body modes are below this multiple of the effect of rounding: sums of rounded entries are rounded as well.
+_RIGID = 4.0
 
 
 def from_matrices(
@@ -29,6 +31,7 @@ def from_matrices(
     *,
     damping_ratios: Sequence[float] | float | None = None,
     shift: float | None = None,
+    rounding: float = float(np.finfo(np.float64).eps),
     length_m: float = 1.0,
     mass_kg: float = 1.0,
 ) -> Structure:
@@ -37,8 +40,10 @@ def from_matrices(
     ``stiffness`` and ``mass`` are Matrix Market files or scipy.sparse matrices, symmetric, without the fixed degrees of freedom.
     ``points`` gives, for each point that may be struck, its degree of freedom (from 0) or a vector of weights over all
     of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those to be computed. The default is slightly negative, so that
-    the matrix of a structure that moves freely can be factorised.
+    the matrix of a structure that moves freely can be factorised. ``rounding`` is the relative rounding of the entries of the
+    stiffness matrix, which tells rigid-body modes from elastic ones: 1e-7 for a file with seven digits.
     """
+    from scipy.sparse import bmat, csc_array
     from scipy.sparse.linalg import eigsh, splu
 
     k, m = _matrix("stiffness", stiffness), _matrix("mass", mass)
@@ -47,6 +52,8 @@ def from_matrices(
         raise ValueError(f"mass = {m.shape} is not allowed: as large as the stiffness matrix, {k.shape}")
     if not 0 < count < size:
         raise ValueError(f"count = {count} is not allowed: 1 to {size - 1}, one less than the degrees of freedom")
+    if not 0.0 < rounding < 1.0:
+        raise ValueError(f"rounding = {rounding} is not allowed: a number between 0 and 1")
     shape_factor, compliance_factor = units(length_m, mass_kg)
     loads = {name: _load(name, point, size) for name, point in points.items()}
     if shift is None:
@@ -54,25 +61,27 @@ def from_matrices(
         shift = -1e-9 * float(abs(k.diagonal()).sum() / abs(m.diagonal()).sum())
     # A random start would make every run differ.
     start = np.random.default_rng(0).standard_normal(size)
-    eigenvalues, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
+    _, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
+    vectors = vectors / np.sqrt(np.einsum("ij,ij->j", vectors, m @ vectors))
+    eigenvalues = np.einsum("ij,ij->j", vectors, k @ vectors)
     order = np.argsort(eigenvalues)
     eigenvalues, vectors = eigenvalues[order], vectors[:, order]
-    vectors = vectors / np.sqrt(np.einsum("ij,ij->j", vectors, m @ vectors))
-    rigid = np.abs(eigenvalues) < _RIGID * np.abs(eigenvalues).max()
+    rounded = rounding * np.einsum("ij,ij->j", abs(vectors), abs(k) @ abs(vectors))
+    rigid = np.abs(eigenvalues) <= _RIGID * rounded
     if np.any(eigenvalues[~rigid] < 0.0):
-        raise ValueError(f"stiffness is not allowed: the eigenvalue {eigenvalues.min()} is negative, the structure unstable")
+        raise ValueError(
+            f"stiffness is not allowed: the eigenvalue {eigenvalues.min()} is negative, the structure unstable "
+            "(if the entries have few digits, state their rounding)"
+        )
+    if rigid.all():
+        raise ValueError(f"count = {count} is not allowed: more than the {count} rigid-body modes that were found")
     modes = vectors[:, rigid]
-    # With rigid-body modes the shifted matrix is factorised in place of K, and iteration removes the error.
-    factors = splu((k - shift * m).tocsc() if rigid.any() else k.tocsc())
+    moved = csc_array(m @ modes)
+    factors = splu(bmat([[k, moved], [moved.T, None]], format="csc") if rigid.any() else k.tocsc())
 
     def compliance(load: Floats) -> float:
         balanced = load - m @ (modes @ (modes.T @ load))
-        answer = np.zeros(size)
-        for _ in range(20):
-            answer = answer + factors.solve(balanced - k @ answer)
-            answer = answer - modes @ (modes.T @ (m @ answer))
-            if np.linalg.norm(balanced - k @ answer) <= 1e-12 * np.linalg.norm(balanced):
-                break
+        answer = factors.solve(np.concatenate([balanced, np.zeros(modes.shape[1])]))[:size]
         return float(balanced @ answer)
 
     omega = np.where(rigid, 0.0, np.sqrt(np.maximum(eigenvalues, 0.0)))

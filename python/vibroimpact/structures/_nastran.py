@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._structure import Floats, Structure, direction, units
+from ._structure import Floats, Structure, direction, frequencies, units
 
 
 def from_nastran(
@@ -33,9 +33,7 @@ def from_nastran(
     model = _read(op2)
     vectors = _first(model.eigenvectors, op2, "eigenvectors: DISPLACEMENT(PLOT) = ALL")
     count = vectors.data.shape[0]
-    eigenvalues = np.asarray(vectors.eigns, dtype=np.float64)
-    # Rigid-body modes have small eigenvalues of either sign, due to rounding.
-    omega = np.where(eigenvalues < 1e-9 * eigenvalues.max(), 0.0, np.sqrt(np.abs(eigenvalues)))
+    omega = frequencies(op2, np.asarray(vectors.eigns, dtype=np.float64))
     table = next(iter(model.eigenvalues.values()), None)
     masses = np.ones(count) if table is None else np.asarray(table.generalized_mass, dtype=np.float64)[:count]
     shapes = {

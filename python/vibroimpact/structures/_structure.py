@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
@@ -84,10 +84,14 @@ class Structure:
         return structure
 
     def uncertain(self, location: str | None = None) -> dict[str, dict[str, list[float]]]:
-        """The entry ``uncertain`` of a sweep: a normal distribution for each number with a standard deviation.
+        """The entry ``uncertain`` of a sweep: a distribution for each number with a standard deviation.
 
-        With ``location``, shapes of other points are omitted, because they do not affect an impact there.
+        Frequencies and damping ratios are positive. Their distribution is lognormal, with the mean and the standard deviation
+        that were measured; that of shapes is normal. With ``location``, shapes of other points are omitted, because they do
+        not affect an impact there.
         """
+        if location is not None and location not in self.shapes:
+            raise ValueError(f"location = {location!r} is not allowed: one of the points {list(self.shapes)}")
         means: dict[str, Floats] = {"omega_rad_s": self.omega_rad_s}
         if self.damping_ratios is not None:
             means["damping_ratios"] = self.damping_ratios
@@ -97,14 +101,48 @@ class Structure:
         for name, values in means.items():
             for k, (mean, sd) in enumerate(zip(values, self.standard_deviations.get(name, ()), strict=False)):
                 if sd > 0.0:
-                    found[f"structure.{name}[{k}]"] = {"normal": [float(mean), float(sd)]}
+                    place = f"{name}[{k}]"
+                    positive = name in ("omega_rad_s", "damping_ratios")
+                    found[f"structure.{place}"] = (
+                        {"lognormal": _lognormal(place, float(mean), float(sd))}
+                        if positive
+                        else {"normal": [float(mean), float(sd)]}
+                    )
         return found
 
     def write_sweep(self, path: str | PathLike[str], scene: Mapping[str, Any]) -> None:
-        """Writes a sweep in which the numbers of this structure are uncertain; ``scene`` has all entries but ``structure``."""
-        whole = {**scene, "structure": self.modal()}
-        sweep = {"scene": whole, "uncertain": self.uncertain(scene.get("location"))}
+        """Writes a sweep in which the numbers of this structure are uncertain; ``scene`` has all entries but ``structure``.
+
+        The compliance of the modes that are not listed stays the same in every draw, so that the static compliance varies with
+        the listed modes.
+        """
+        uncertain = self.uncertain(scene.get("location"))
+        if not uncertain:
+            raise ValueError("standard_deviations are missing: at least one number with a standard deviation is needed")
+        structure = self.modal()
+        for name in self.static_compliances_m_n:
+            point = structure["points"][name]
+            del point["static_compliance_m_n"]
+            point["residual_compliance_m_n"] = self._residual_compliance_m_n(name)
+        sweep = {"scene": {**scene, "structure": structure}, "uncertain": uncertain}
         Path(path).write_text(json.dumps(sweep, indent=2) + "\n", encoding="utf-8")
+
+    def _residual_compliance_m_n(self, name: str) -> float:
+        """The static compliance at a point less that of the listed modes."""
+        elastic = self.omega_rad_s > 0.0
+        listed = float(np.sum((self.shapes[name][elastic] / self.omega_rad_s[elastic]) ** 2))
+        whole = self.static_compliances_m_n[name]
+        if whole < listed * (1.0 - _ROUNDING):
+            raise ValueError(f"static compliance of {name} = {whole} is not allowed: not less than that of the listed modes, {listed}")
+        return max(whole - listed, 0.0)
+
+
+def _lognormal(name: str, mean: float, sd: float) -> list[float]:
+    """Median, and standard deviation of the logarithm, of the lognormal distribution with this mean and standard deviation."""
+    if mean <= 0.0:
+        raise ValueError(f"{name} = {mean} with the standard deviation {sd} is not allowed: a positive number, or no standard deviation")
+    square = math.log1p((sd / mean) ** 2)
+    return [mean * math.exp(-0.5 * square), math.sqrt(square)]
 
 
 def _numbers(name: str, values: ArrayLike, count: int | None = None) -> Floats:
@@ -114,6 +152,39 @@ def _numbers(name: str, values: ArrayLike, count: int | None = None) -> Floats:
     if not np.all(np.isfinite(numbers)):
         raise ValueError(f"{name} is not allowed: finite numbers only")
     return numbers
+
+
+# Eigenvalues below this share of the next one are those of rigid-body modes, of which a body has at most six. The frequencies then
+# differ by a factor of 1000, which only an extremely soft support would cause.
+_GAP = 1e-6
+_MOST_RIGID = 6
+# A negative eigenvalue of at most this share of the lowest positive one is zero to rounding.
+_NEGATIVE = 1e-3
+# The compliance of the listed modes may exceed the stated one by this share.
+_ROUNDING = 1e-9
+
+
+def frequencies(path: str | PathLike[str], eigenvalues: Floats, supported: bool = False) -> Floats:
+    """Angular frequencies from the eigenvalues that a program has written; those of rigid-body modes are 0.
+
+    A program writes the eigenvalue of a rigid-body mode with its rounding, of either sign. How large that is depends on the mesh,
+    which is not known here, so that only a gap tells it from an elastic mode. A structure that is known to be ``supported`` has no
+    rigid-body modes.
+    """
+    values = np.array(eigenvalues, dtype=np.float64)
+    sizes = np.sort(np.abs(values))
+    last = 0 if supported else min(_MOST_RIGID, len(sizes) - 1)
+    gaps = [k for k in range(1, last + 1) if sizes[k - 1] <= _GAP * sizes[k]]
+    elastic = sizes[max(gaps, default=0)]
+    values[np.abs(values) < elastic] = 0.0
+    positive = values[values > 0.0]
+    if not supported and positive.size:
+        values[(values < 0.0) & (-values <= _NEGATIVE * positive.min())] = 0.0
+    if np.any(values < 0.0):
+        raise ValueError(
+            f"{fspath(path)}: the eigenvalue {values.min()} is not allowed: 0 or a positive number; an unstable structure has no modes"
+        )
+    return np.asarray(np.sqrt(values))
 
 
 def direction(name: str, given: Sequence[float]) -> Floats:
