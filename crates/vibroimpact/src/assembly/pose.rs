@@ -334,7 +334,9 @@ impl Posed {
                 let fault = fault.under(inner).without("force");
                 match fault.value {
                     Some(Value::Number(omega)) if fault.field == "omega_rad_s" => {
-                        InvalidInput::new("frequency_hz", number(omega / TAU), fault.allowed)
+                        // without the last digit, which is rounding
+                        let frequency_hz = format!("{:.14e}", omega / TAU).parse().unwrap_or(omega / TAU);
+                        InvalidInput::new("frequency_hz", number(frequency_hz), fault.allowed)
                     }
                     _ => fault,
                 }

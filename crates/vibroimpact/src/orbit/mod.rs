@@ -116,6 +116,9 @@ impl AssemblyScene {
                 .collect();
             begin = doubled.len();
             for doubling in doublings {
+                if stop() {
+                    break;
+                }
                 let found = follow_doubled(build, &branch, &doubling, stop).map_err(in_scene)?;
                 doubled.push((doubling.parameter, found));
             }
