@@ -250,6 +250,90 @@ fn hysteresis_with_tiny_loops() {
     }
 }
 
+/// Reversals of a law with branches before remainder modes that are far stiffer than the contact: the rate of compression hardly
+/// depends on them, and none of their vibrations counts as a reversal that the exact motion does not have.
+#[test]
+fn reversals_before_a_stiff_remainder() {
+    let law = Hysteretic { stiffness_n_m1_5: 6608692376.459647, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 };
+    let law = Law::from(law.validated().unwrap());
+    let striker = Striker { mass_kg: 2.6387535597869674, speed_m_s: 1.5590651578333043 };
+    for n in [5, 7] {
+        let solver = Solver::new(&pinned_with_remainder(n, 0.047728347855474716, 0.337)).unwrap();
+        let at = |tolerance: f64| {
+            let solution = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
+            assert_eq!(solution.outcome, Outcome::Rebound, "N = {n}, tolerance {tolerance:e}");
+            assert!(solution.counts.contact_steps < 10_000, "N = {n}, tolerance {tolerance:e}: {:?}", solution.counts);
+            (solution.restitution.unwrap(), solution.restitution_uncertainty.unwrap())
+        };
+        let (reference, _) = at(1e-13);
+        for power in 5..=12 {
+            let (value, stated) = at(10f64.powi(-power));
+            let error = (value - reference).abs();
+            assert!(error <= stated, "N = {n}, 1e-{power}: {error:e}, stated {stated:e}");
+        }
+    }
+}
+
+/// A contact a thousand times stiffer than a mode behind it that is faster than all others: this mode takes up nearly all of the
+/// compression, and an error of the force must not count as a separation.
+#[test]
+fn a_hard_contact_before_a_soft_fast_mode() {
+    let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape };
+    let fast = 500.0;
+    let structure = Structure {
+        modes: vec![
+            mode(1.2160361712701584, 0.020805500388699716),
+            mode(4.864144685080634, 0.03311089673940061),
+            mode(10.944325541431425, 0.03188880940462351),
+            mode(19.456578740322534, 0.01763852315498458),
+            mode(30.40090428175396, -0.0038179960183024188),
+            mode(43.7773021657257, -0.023714669825415827),
+            mode(0.0, 0.09908877401009737),
+            mode(0.0, 0.5395653781857226),
+            mode(fast, fast * 2.110571348277004e-6f64.sqrt()),
+        ],
+    };
+    let striker = Striker { mass_kg: 15479.79545052681, speed_m_s: 0.3617139734325054 };
+    let law = Law::from(Hertz::new(295117987073.0457).unwrap());
+    let start = Start {
+        amplitude: vec![
+            0.003983493407974803,
+            0.0004100399187616022,
+            -0.0007059671983022537,
+            0.00029984135404229507,
+            0.0006733854191444199,
+            0.00019263016194060888,
+            -0.8733242510345859,
+            0.40994265145827846,
+            0.0,
+        ],
+        rate: vec![
+            -0.00025610746671355983,
+            0.00246464716124219,
+            6.824243804665353e-5,
+            -0.006908863566526099,
+            0.024731848378234066,
+            -0.0014611665859350243,
+            0.002421965827045995,
+            -1.598387350037492e-5,
+            0.0,
+        ],
+        gap_m: 0.0006696355739981407,
+    };
+    let solver = Solver::new(&structure).unwrap();
+    let at = |tolerance: f64| solver.solve(&striker, &law, Some(&start), &settings(tolerance)).unwrap();
+    let reference = at(1e-12);
+    for i in 0..=20 {
+        let tolerance = 10f64.powf(-4.0 - 0.32 * f64::from(i));
+        let solution = at(tolerance);
+        assert_eq!(solution.outcome, Outcome::Rebound, "{tolerance:e}");
+        assert_eq!(solution.sub_impacts.len(), reference.sub_impacts.len(), "{tolerance:e}");
+        let error = (solution.restitution.unwrap() - reference.restitution.unwrap()).abs();
+        let stated = solution.restitution_uncertainty.unwrap();
+        assert!(error <= stated && stated < 100.0 * tolerance, "{tolerance:e}: {error:e}, stated {stated:e}");
+    }
+}
+
 /// A heavily damped contact pauses, without force, and resumes, a dozen times. For any ratio of its dyadic steps to the modes
 /// (time is scaled, which changes the ratio), none of the short contacts is missed.
 #[test]
@@ -440,7 +524,7 @@ fn no_overlap(b: f64) {
 }
 
 proptest! {
-    #![proptest_config(config(200))]
+    #![proptest_config(config(300))]
 
     #[test]
     fn every_impact_ends_with_valid_numbers(
