@@ -13,9 +13,8 @@
 use vibroimpact_sim::modal::Mode;
 
 use super::Cost;
-use super::pose::{MOST_MODES, Pose, Source};
-use crate::scene::compliance;
-use crate::scene::{BeamTheory, InvalidInput};
+use super::pose::{Pose, Source};
+use crate::scene::{BeamTheory, InvalidInput, Waves, compliance};
 
 /// Factor from one number of modes to the next.
 pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
@@ -41,36 +40,25 @@ fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
     square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
 }
 
-/// The expected number of modes, before any is computed: on average over a beam's length, the modes up
-/// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
+/// The expected number of modes, before any is computed.
 fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
-    let (beam, location_m) = match &pose.source {
-        Source::Beam { beam, location_m, .. } => (beam, location_m),
-        Source::Computed { structure, .. } => {
-            let enough = |n: usize| {
-                let (omega, added) = structure.estimate(n).unwrap_or_default();
-                resolution(pose, omega, added) >= target
-            };
-            let most = pose.source.most();
-            return Ok((FEWEST + 1..most).find(|n| enough(*n)).unwrap_or(most));
-        }
-        Source::Listed { .. } => return Ok(pose.source.most()),
+    let most = pose.source.most();
+    let first = |estimate: &dyn Fn(usize) -> (f64, f64)| {
+        let enough = |n: &usize| {
+            let (omega, added) = estimate(*n);
+            resolution(pose, omega, added) >= target
+        };
+        (FEWEST + 1..most).find(enough).unwrap_or(most)
     };
-    let segments = beam.to_beam().map_err(|fault| fault.within("structure"))?.segments;
-    let slowness = |s: &beam_modes::Segment| (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25);
-    let phase: f64 = segments.iter().map(|s| s.length_m * slowness(s)).sum();
-    let mut ends_m = 0.0;
-    let here = segments.iter().find(|s| {
-        ends_m += s.length_m;
-        ends_m >= *location_m
-    });
-    let Some(here) = here.or(segments.last()) else { return Ok(FEWEST) };
-    let enough = (FEWEST + 1..MOST_MODES).find(|&n| {
-        let root = n as f64 * std::f64::consts::PI / phase;
-        let added = root * slowness(here) / (std::f64::consts::PI * here.mass_per_length_kg_m);
-        resolution(pose, root * root, added) >= target
-    });
-    Ok(enough.unwrap_or(MOST_MODES))
+    Ok(match &pose.source {
+        Source::Beam { beam, location_m, .. } => match Waves::new(beam, *location_m) {
+            Ok(Some(waves)) => first(&|n| waves.expected(n)),
+            Ok(None) => FEWEST,
+            Err(fault) => return Err(fault.within("structure")),
+        },
+        Source::Computed { structure, .. } => first(&|n| structure.estimate(n).unwrap_or_default()),
+        Source::Listed { .. } => most,
+    })
 }
 
 /// The number of modes at the start, and the one with which the restitution may have converged.

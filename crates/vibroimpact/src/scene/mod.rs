@@ -71,6 +71,7 @@ mod structure;
 mod theory;
 pub(crate) mod told;
 pub(crate) mod toml;
+mod waves;
 
 pub use beam::{Beam, End};
 pub use beam_modes::RectangularSegment;
@@ -104,6 +105,7 @@ pub use striker::Striker;
 pub use string::TautString;
 pub use structure::Structure;
 pub use theory::TheoryVariant;
+pub(crate) use waves::Waves;
 
 pub(crate) use material::numbers_of_materials;
 pub(crate) use modes_file::table_path;

@@ -14,6 +14,7 @@ use super::location::Location;
 use super::place::{MOST_MODES, Place};
 use super::plate::Edge;
 use super::structure::Structure;
+use super::waves::Waves;
 
 /// Checks that the truncated modes of a structure can be extrapolated: a list needs at least one elastic mode.
 pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), InvalidInput> {
@@ -34,8 +35,8 @@ pub(crate) const COMPLETE: f64 = 1e-11;
 const ROUNDING: f64 = 1e-9;
 /// Modes for a remainder are computed in multiples of this number, so that impacts with a few more modes share them.
 const SIZES: usize = 64;
-/// Largest number of modes computed for a remainder because the location is near an end.
-const MOST_NEAR_END: usize = 1024;
+/// Largest number of modes computed for a remainder because the location is near a reflection.
+const MOST_NEAR_REFLECTION: usize = 2048;
 
 impl Structure {
     /// Number of modes from which those beyond the first `kept` can be extrapolated: only `kept` for a list, and for a plate whose
@@ -47,23 +48,24 @@ impl Structure {
             _ => false,
         };
         if cheap {
-            let enough = beam_modes::enough_for_remainder(kept).max(self.resolving_nearest_end(place));
+            let enough = beam_modes::enough_for_remainder(kept).max(self.resolving_reflections(place));
             enough.next_multiple_of(SIZES).min(MOST_MODES.max(kept))
         } else {
             kept
         }
     }
 
-    /// Number of modes up to the one with half a wavelength between the location and the nearest end, at most 1024. Up to it the
-    /// shapes at the location grow with the frequency near a support, and decrease near a free end. Beyond it they have the same
-    /// mean square, by which the modes that are not computed are extrapolated. With fewer modes, all numbers of retained modes
-    /// would share the error of the extrapolation, and the change between them would not show it.
-    fn resolving_nearest_end(&self, place: Place) -> usize {
+    /// Number of modes up to the one of which half a wave fits between the location and the nearest reflection: an end, and for beams
+    /// a step, a support or an attachment. Before it the mean square of the shapes at the location is another than beyond, by which
+    /// the modes that are not computed are extrapolated: it grows near a support, decreases near a free end, and is that of both
+    /// sides near a step. With fewer modes, all numbers of retained modes would share the error of the extrapolation, and the change
+    /// between them would not show it.
+    fn resolving_reflections(&self, place: Place) -> usize {
         let nearest = |distances: &[f64]| distances.iter().copied().fold(f64::INFINITY, f64::min);
         let count = match (self, place.location_m) {
             (Structure::Beam(beam), Some(Location::Along(x_m))) => {
-                let length_m: f64 = beam.segments.iter().map(|segment| segment.length_m).sum();
-                length_m / nearest(&[x_m, length_m - x_m])
+                let waves = Waves::new(beam, x_m).ok().flatten();
+                waves.map_or(0.0, |waves| waves.resolving_reflection())
             }
             (Structure::TautString(string), Some(Location::Along(x_m))) => {
                 string.length_m / nearest(&[x_m, string.length_m - x_m])
@@ -76,7 +78,7 @@ impl Structure {
             _ => 0.0,
         };
         // on the end itself the shapes neither grow nor decrease
-        if count.is_finite() { count.ceil().clamp(0.0, MOST_NEAR_END as f64) as usize } else { 0 }
+        if count.is_finite() { count.ceil().clamp(0.0, MOST_NEAR_REFLECTION as f64) as usize } else { 0 }
     }
 
     /// Remainder modes in place of all modes beyond the first `kept` of those `known`, for a structure with this static compliance.
