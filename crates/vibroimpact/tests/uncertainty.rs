@@ -9,7 +9,7 @@ use std::path::Path;
 use gallery::named;
 use serde_json::{Value, json};
 use vibroimpact::Scene;
-use vibroimpact::model::{Answer, Model, Modes};
+use vibroimpact::model::{Answer, Kept, Model, Modes};
 
 fn answer(scene: &Scene) -> Answer {
     scene.answer().unwrap()
@@ -180,6 +180,22 @@ fn changes_that_do_not_decrease_are_stated_with_caution() {
     assert!(!found.settled && error > 0.02 && error <= found.uncertainty.of_model().unwrap(), "{error:e} {found:?}");
 }
 
+/// After a single contact the restitution changes by 3e-8 with every further number of modes, while only the energy of the
+/// remainder modes does not yet show that it has converged: more modes are taken until it does.
+#[test]
+fn a_single_contact_takes_as_many_modes_as_it_needs() {
+    let segment = json!({ "length_m": 1.44, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "poissons_ratio": 0.3,
+                          "width_m": 0.00702, "thickness_m": 0.00702 });
+    let scene = json!({ "structure": { "kind": "beam", "theory": "timoshenko", "ends": ["free", "clamped"],
+            "damping_ratio": 0.0145, "segments": [segment] },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.00318, "speed_m_s": 1.122 },
+        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+        "location_m": 0.5136, "tolerance": 1e-6 });
+    let found = Scene::from_value(&scene).unwrap().answer_with(&mut Kept::default()).unwrap();
+    assert_eq!((found.settled, found.sub_impact_count), (true, Some(1)), "{found:?}");
+    assert!(found.restitution_uncertainty.unwrap() <= 1e-6, "{found:?}");
+}
+
 /// The same extrapolation for all numbers of modes near an end: with too few computed modes it depends on how many there are.
 #[test]
 fn near_an_end_the_restitution_has_no_jump_at_any_number_of_modes() {
@@ -192,6 +208,39 @@ fn near_an_end_the_restitution_has_no_jump_at_any_number_of_modes() {
     let [before, last, next, after] = [63, 64, 65, 66].map(|modes| converged(&scene, modes, 1e-9));
     let (usual, jump) = ((last - before).abs().max((after - next).abs()), (next - last).abs());
     assert!(jump < 2.0 * usual, "{jump:e} {usual:e}");
+}
+
+/// The same near a step of the cross-section, 1/950 of the length away: the shapes are those of both sides until half a wave fits.
+#[test]
+fn near_a_step_the_restitution_has_no_jump_at_any_number_of_modes() {
+    let segment = |length_m: f64, thickness_m: f64| {
+        json!({ "length_m": length_m, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.00584,
+                "thickness_m": thickness_m })
+    };
+    let beam = json!({ "structure": { "kind": "beam", "ends": ["free", "clamped"], "damping_ratio": 0.01765,
+            "segments": [segment(0.2092, 0.00584), segment(0.3591, 0.000742)] },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.00479, "speed_m_s": 0.1347 },
+        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 }, "location_m": 0.2086 });
+    let scene = Scene::from_value(&beam).unwrap();
+    let jump = (converged(&scene, 513, 1e-9) - converged(&scene, 512, 1e-9)).abs();
+    assert!(jump < 1e-9, "{jump:e}");
+}
+
+/// The end of a beam whose segments of 0.7 m and 0.1 m are, as numbers, shorter than 0.8 m.
+#[test]
+fn the_end_of_a_beam_of_two_segments_is_on_it() {
+    let mut value: Value = serde_json::from_str(&near_the_root().to_json()).unwrap();
+    let segment = value["structure"]["segments"][0].clone();
+    value["structure"]["segments"] = json!([segment, segment]);
+    for (i, length_m) in [0.7, 0.1].into_iter().enumerate() {
+        value["structure"]["segments"][i]["length_m"] = json!(length_m);
+    }
+    let at = |location_m: f64| {
+        let mut value = value.clone();
+        value["location_m"] = json!(location_m);
+        answer(&Scene::from_value(&value).unwrap()).restitution
+    };
+    assert_eq!(at(0.8), at(0.7 + 0.1));
 }
 
 /// A list that makes up the whole static compliance is complete, and only the solver contributes to the uncertainty.

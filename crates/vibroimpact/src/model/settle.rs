@@ -44,8 +44,8 @@ const TIGHTER: f64 = 1.0 / 30.0;
 /// The solver's part: this share of its tolerance, and of the change between runs whose tolerances differ by a factor of thirty.
 const SOLVER_FLOOR: f64 = 0.5;
 const SOLVER_CHANGE: f64 = 0.1;
-/// Beyond this many modes the number is raised only while changes decrease: the last must be smaller than this share of the one
-/// two steps before.
+/// Beyond this many modes the number is raised after several contacts only while changes decrease: the last must be smaller than
+/// this share of the one two steps before. A single contact amplifies nothing, so that more modes help.
 const PATIENCE: usize = 400;
 const FALLING: f64 = 0.5;
 /// Two impacts may agree by accident, and small changes may add up. The stated uncertainty from the truncated modes is
@@ -266,7 +266,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             return finish(pose, rungs, settled, cost);
         }
         let tighter = rungs.last.settings.tolerance > SOLVER_RANGE.0;
-        let next = if count >= PATIENCE && !rungs.falls() {
+        let next = if count >= PATIENCE && rungs.last.has_several_contacts() && !rungs.falls() {
             return finish(pose, rungs, false, cost);
         } else if !ends {
             let raised = more(count);
