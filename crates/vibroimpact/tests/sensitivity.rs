@@ -119,6 +119,25 @@ fn shapes_on_the_diagonal_of_a_square_plate_have_derivatives() {
     assert!(reference.abs() > 1.0 && (derivative.value / reference - 1.0).abs() < 1e-4, "{derivative:?} {reference}");
 }
 
+/// If the last mode is one of two with the same frequency, the length changes which of them it is, but the location does not.
+#[test]
+fn the_last_mode_of_a_square_plate_does_not_blur_the_location() {
+    let tree = changed("simply-supported-plate.json", |tree| {
+        tree["structure"]["length_m"] = json!(0.3);
+        tree["structure"]["width_m"] = json!(0.3);
+        tree["location_m"] = json!([0.1, 0.1]);
+        tree["modes"] = json!(12);
+        tree["residual_compliance"] = json!(false);
+    });
+    let fields = ["structure.length_m", "location_m[0]"].map(str::to_owned);
+    let found = Scene::from_value(&tree).unwrap().sensitivity(&fields).unwrap();
+    let [length, location] = fields.each_ref().map(|field| found.of("restitution", field).unwrap());
+    let reference = difference(&found.scene, "/location_m/0", 1e-5);
+    let (error, uncertainty) = ((location.value - reference).abs(), location.uncertainty.unwrap());
+    assert!(error <= 1e-5 * reference.abs() && uncertainty < 1e-5 * reference.abs(), "{location:?} {reference}");
+    assert!(length.uncertainty.is_none_or(|by| by > 1e-3 * length.value.abs()), "{length:?}");
+}
+
 /// Shapes by Ritz's method have larger errors than others, which the neighbours magnify.
 #[test]
 fn errors_of_the_modes_of_a_plate_are_part_of_the_uncertainty() {

@@ -27,17 +27,19 @@ pub(super) struct Modes {
     /// The kind of each field; `None` for a field that does not change the modes.
     kinds: Vec<Option<Kind>>,
     /// By kind.
-    errors: [Errors; 2],
+    errors: [Errors; 3],
 }
 
 /// The errors of the modes depend on the field: a plate's shapes do not change with its thickness, but are computed anew if its
 /// length changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
-    /// They are those of rounding.
-    Smooth = 0,
-    /// They are larger.
-    Rough = 1,
+    /// The same modes are seen at another point.
+    Place = 0,
+    /// The modes change, and their errors are those of rounding.
+    Smooth = 1,
+    /// Their errors are larger.
+    Rough = 2,
 }
 
 /// Largest relative error of the middle mode by rounding. The last modes are often remainder modes, whose errors are larger in any
@@ -58,12 +60,20 @@ struct Errors {
 impl Modes {
     pub fn new(here: Vec<Vec<Seen>>, near: Vec<Neighbours<Vec<Vec<Seen>>>>) -> Modes {
         let kind = |near: &Neighbours<Vec<Vec<Seen>>>| {
-            let own = || Errors::new(&here, &[near]).middle;
-            let changes = near.at.iter().any(|bodies| *bodies != here);
-            changes.then(|| if own() <= SMOOTH { Kind::Smooth } else { Kind::Rough })
+            let omegas =
+                |bodies: &[Vec<Seen>]| -> Vec<f64> { bodies.iter().flatten().map(|mode| mode.omega_rad_s).collect() };
+            if near.at.iter().all(|bodies| *bodies == here) {
+                None
+            } else if near.at.iter().all(|bodies| omegas(bodies) == omegas(&here)) {
+                Some(Kind::Place)
+            } else if Errors::new(&here, &[near]).middle <= SMOOTH {
+                Some(Kind::Smooth)
+            } else {
+                Some(Kind::Rough)
+            }
         };
         let kinds: Vec<Option<Kind>> = near.iter().map(kind).collect();
-        let errors = [Kind::Smooth, Kind::Rough].map(|which| {
+        let errors = [Kind::Place, Kind::Smooth, Kind::Rough].map(|which| {
             let alike = near.iter().zip(&kinds).filter(|(_, kind)| **kind == Some(which));
             Errors::new(&here, &alike.map(|(near, _)| near).collect::<Vec<_>>())
         });
@@ -85,7 +95,7 @@ impl Modes {
     /// each draw; no digit is certain if one of them is not known.
     pub fn widened(&self, field: usize, derivative: Derivative, changes: &[Option<f64>]) -> Derivative {
         let Some(kind) = self.kinds[field] else { return derivative };
-        let first = if kind == Kind::Rough && self.errors[0].needed { DRAWS } else { 0 };
+        let first = DRAWS * self.errors[..kind as usize].iter().filter(|errors| errors.needed).count();
         let squares = changes.iter().skip(first).take(DRAWS).map(|change| change.map(|change| change * change));
         let mean = squares.sum::<Option<f64>>().map(|sum| sum / DRAWS as f64);
         let own = derivative.uncertainty.zip(mean);
