@@ -70,7 +70,8 @@ pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
             normalise(guide, &mut shape);
             let mut part = 1.0;
             // Twice is enough (Kahan and Parlett).
-            for _ in 0..2 {
+            let passes = if cluster == n { 0 } else { 2 };
+            for _ in 0..passes {
                 for other in &shapes[cluster..n] {
                     let overlap = guide.inner(&shape, other);
                     shape.iter_mut().zip(other).for_each(|(piece, o)| *piece = piece.plus(-overlap, o));
