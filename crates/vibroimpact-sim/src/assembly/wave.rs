@@ -1,7 +1,6 @@
 //! Integrals with `e^{i Omega t}`.
 
 use crate::panel::legendre::{Nodal, Q};
-use crate::panel::oscillator::exponential_moments;
 use num_complex::Complex64;
 
 /// `e^{i Omega t}` over a stretch of time.
@@ -33,17 +32,83 @@ pub(crate) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
 
 /// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
 pub(crate) fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
-    turned(&turned_means(angle), force)
+    Complex64::cis(0.5 * angle) * centred_mean(&spherical_bessel(0.5 * angle), force)
 }
 
-/// The same from the integrals of the polynomials.
-pub(crate) fn turned(means: &[Complex64; Q], force: &Nodal) -> Complex64 {
-    (0..Q).map(|n| force[n] * means[n]).sum()
+/// The same, of `e^{i angle (x - 1/2)}`, from the spherical Bessel functions of half the angle:
+/// `int_0^1 e^{i angle (x - 1/2)} P_n(2x-1) dx = i^n j_n(angle/2)`.
+pub(crate) fn centred_mean(bessel: &Nodal, force: &Nodal) -> Complex64 {
+    let part = |first: usize| {
+        let sign = |n: usize| if n % 4 < 2 { 1.0 } else { -1.0 };
+        (first..Q).step_by(2).map(|n| sign(n) * force[n] * bessel[n]).sum::<f64>()
+    };
+    Complex64::new(part(0), part(1))
 }
 
-/// `int_0^1 e^{i angle x} P_n(2x-1) dx`.
-pub(crate) fn turned_means(angle: f64) -> [Complex64; Q] {
-    // seen from the other end, where odd polynomials change their sign
-    let moments = exponential_moments(Complex64::new(0.0, angle));
-    std::array::from_fn(|n| if n % 2 == 0 { moments[n] } else { -moments[n] })
+/// The spherical Bessel functions `j_n(y)`: by the recurrence `j_{n-1} + j_{n+1} = (2n+1)/y j_n`, upwards where that is stable
+/// and otherwise downwards from the power series of the last two.
+pub(crate) fn spherical_bessel(y: f64) -> Nodal {
+    const LAST: usize = Q - 1;
+    let mut bessel = [0.0; Q];
+    if y.abs() > Q as f64 {
+        let (sin, cos) = y.sin_cos();
+        bessel[0] = sin / y;
+        bessel[1] = (bessel[0] - cos) / y;
+        for n in 1..LAST {
+            bessel[n + 1] = (2 * n + 1) as f64 / y * bessel[n] - bessel[n - 1];
+        }
+        return bessel;
+    }
+    // j_n(y) = y^n/(2n+1)!! sum_k (-y^2/2)^k / (k! (2n+3) (2n+5) .. (2n+2k+1))
+    let half_square = -0.5 * y * y;
+    let series = |n: usize| {
+        let (mut term, mut sum, mut k) = (1.0f64, 1.0, 1);
+        while term.abs() > 1e-17 {
+            term *= half_square / (k * (2 * n + 2 * k + 1)) as f64;
+            sum += term;
+            k += 1;
+        }
+        sum
+    };
+    if y.abs() < 1e-2 {
+        // too small to be divided by
+        let mut power = 1.0;
+        for n in 0..Q {
+            bessel[n] = power * series(n);
+            power *= y / (2 * n + 3) as f64;
+        }
+    } else {
+        let power = (0..LAST - 1).fold(1.0, |power, n| power * y / (2 * n + 3) as f64);
+        bessel[LAST - 1] = power * series(LAST - 1);
+        bessel[LAST] = power * y / (2 * LAST + 1) as f64 * series(LAST);
+        for n in (1..LAST).rev() {
+            bessel[n - 1] = (2 * n + 1) as f64 / y * bessel[n] - bessel[n + 1];
+        }
+    }
+    bessel
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::legendre::{BASIS, legendre};
+
+    #[test]
+    fn the_mean_of_a_turned_polynomial_is_its_integral() {
+        for angle in [0.0, 1e-6, 0.0199, 0.0201, 0.7, -3.0, 15.9, 16.1, 40.0] {
+            for n in 0..Q {
+                let mut force = [0.0; Q];
+                force[n] = 1.0;
+                let parts = 20;
+                let known: Complex64 = (0..parts)
+                    .flat_map(|i| {
+                        BASIS.fine.iter().map(move |(x, w)| ((i as f64 + x) / parts as f64, w / parts as f64))
+                    })
+                    .map(|(x, w)| w * legendre(x)[n] * Complex64::cis(angle * x))
+                    .sum();
+                let error = (turned_mean(angle, &force) - known).norm();
+                assert!(error < 1e-14, "angle {angle}, degree {n}: {error:e}");
+            }
+        }
+    }
 }

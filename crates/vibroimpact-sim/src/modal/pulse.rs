@@ -1,7 +1,7 @@
 //! The force of one contact as it is computed, and its integrals over time.
 
-use crate::assembly::wave::{turned, turned_means};
-use crate::panel::legendre::{Nodal, Q};
+use crate::assembly::wave::{centred_mean, spherical_bessel};
+use crate::panel::legendre::Nodal;
 use num_complex::Complex64;
 
 /// The contact force from one time to another: a polynomial on each panel.
@@ -39,19 +39,41 @@ impl Pulse {
     /// ```
     pub fn transform_n_s(&self, omega_rad_s: f64) -> [f64; 2] {
         let mut sum = Complex64::ZERO;
-        let mut last: Option<(f64, [Complex64; Q])> = None;
+        let mut last: Option<(f64, Nodal)> = None;
         for panel in &self.panels {
             let length_s = panel.length_s;
             // most panels are as long as the one before
-            let means = match last {
-                Some((known_s, means)) if known_s == length_s => means,
-                _ => turned_means(omega_rad_s * length_s),
+            let bessel = match last {
+                Some((known_s, bessel)) if known_s == length_s => bessel,
+                _ => spherical_bessel(0.5 * omega_rad_s * length_s),
             };
-            last = Some((length_s, means));
-            let turn = Complex64::cis(omega_rad_s * (panel.start_s - self.from_s));
-            sum += length_s * turn * turned(&means, &panel.force);
+            last = Some((length_s, bessel));
+            let middle_s = panel.start_s - self.from_s + 0.5 * length_s;
+            sum += length_s * Complex64::cis(omega_rad_s * middle_s) * centred_mean(&bessel, &panel.force);
         }
         [sum.re, sum.im]
+    }
+
+    /// The same at `count` frequencies, the multiples of one step from zero on (rad/s), at a fraction of the cost of single ones:
+    /// the waves at the next frequency are those at the one before, turned further.
+    pub fn transforms_n_s(&self, step_rad_s: f64, count: usize) -> Vec<[f64; 2]> {
+        let mut sums = vec![Complex64::ZERO; count];
+        let mut last: Option<(f64, Vec<Nodal>)> = None;
+        for panel in &self.panels {
+            let length_s = panel.length_s;
+            let bessels = match last.take() {
+                Some((known_s, bessels)) if known_s == length_s => bessels,
+                _ => (0..count).map(|i| spherical_bessel(0.5 * step_rad_s * i as f64 * length_s)).collect(),
+            };
+            let further = Complex64::cis(step_rad_s * (panel.start_s - self.from_s + 0.5 * length_s));
+            let mut wave = Complex64::new(length_s, 0.0);
+            for (sum, bessel) in sums.iter_mut().zip(&bessels) {
+                *sum += wave * centred_mean(bessel, &panel.force);
+                wave *= further;
+            }
+            last = Some((length_s, bessels));
+        }
+        sums.into_iter().map(|sum| [sum.re, sum.im]).collect()
     }
 
     /// `int F^2 dt` (N^2 s).

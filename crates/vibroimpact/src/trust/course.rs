@@ -153,7 +153,7 @@ impl Course {
             }
             let steps = (highest / (STEP * rate)).ceil().max(1.0) as usize;
             let h = highest / steps as f64;
-            let values: Vec<f64> = (0..=2 * steps).map(|i| pulse.spectrum(0.5 * h * i as f64)).collect();
+            let values = pulse.spectra(0.5 * h, 2 * steps + 1);
             let part = |three: &[f64]| (three[0] + 4.0 * three[1] + three[2]) * h / 6.0;
             below += values.windows(3).step_by(2).map(part).sum::<f64>();
             whole += PI * pulse.square_n2_s();
@@ -163,6 +163,16 @@ impl Course {
 }
 
 impl Pulse {
+    /// `|F|^2` at the first multiples of a frequency, from zero on.
+    fn spectra(&self, step_rad_s: f64, count: usize) -> Vec<f64> {
+        match &self.force {
+            Force::Computed(pulse) => {
+                pulse.transforms_n_s(step_rad_s, count).iter().map(|[re, im]| re * re + im * im).collect()
+            }
+            Force::Samples(_) | Force::Unknown => (0..count).map(|i| self.spectrum(step_rad_s * i as f64)).collect(),
+        }
+    }
+
     fn spectrum(&self, omega_rad_s: f64) -> f64 {
         if omega_rad_s * self.duration_s > FASTEST {
             return 0.0;
