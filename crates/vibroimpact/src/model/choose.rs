@@ -2,6 +2,7 @@
 
 use super::choice::{Choice, Tried};
 use super::pose::Pose;
+use super::theory::Found;
 use super::{Answer, Cost, Kept, Model, Modes, infinite, rigid, settle, stated};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure, chooses_modes, modal_only};
@@ -45,9 +46,10 @@ impl Scene {
 
     /// The same, with cached data.
     pub(crate) fn choose_and_judge(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
-        let choice = self.choose_with(kept)?;
+        let mut found = Found::default();
+        let choice = self.choose_with(&mut found, kept)?;
         let mut cost = choice.answer.cost;
-        let answer = self.judge_theory(choice.answer, &mut cost)?;
+        let answer = self.judge_theory(choice.answer, &mut found, &mut cost)?;
         Ok(Choice { answer: Answer { cost, ..answer }, ..choice })
     }
 
@@ -57,15 +59,15 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn answer_with(&self, kept: &mut Kept) -> Result<Answer, InvalidInput> {
-        Ok(self.choose_with(kept)?.answer)
+        Ok(self.choose_with(&mut Found::default(), kept)?.answer)
     }
 
-    fn choose_with(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
+    fn choose_with(&self, found: &mut Found, kept: &mut Kept) -> Result<Choice, InvalidInput> {
         if self.is_infinite() {
             return infinite::of_infinite_structure(self);
         }
         let mut cost = Cost::default();
-        let open = self.with_theory(&mut cost)?;
+        let open = self.with_theory(found, &mut cost)?;
         let scene = open.as_ref().map_or(self, |(scene, _)| scene);
         let mut choice = match (scene.model, modal_only(scene)) {
             (Model::Auto | Model::Modal, Some(_)) => stated::stated(scene, kept, &mut cost)?,
@@ -111,7 +113,7 @@ impl Scene {
         if !chooses_modes(self) {
             return Ok(Scene { model: Model::Auto, ..self.clone() });
         }
-        let open = self.with_theory(&mut Cost::default())?;
+        let open = self.with_theory(&mut Found::default(), &mut Cost::default())?;
         let mut scene = open.map_or_else(|| self.clone(), |(scene, _)| scene);
         let impact = settled_impact(&scene)?;
         let kept = impact.kept_modes();
@@ -155,7 +157,7 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
 /// The modal problem with as many modes as the restitution needs to converge.
 pub(super) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
     let kept = &mut Kept::default();
-    let open = scene.with_theory(&mut Cost::default())?;
+    let open = scene.with_theory(&mut Found::default(), &mut Cost::default())?;
     let scene = open.as_ref().map_or(scene, |(scene, _)| scene);
     let choice = modal(&mut Pose::new(scene, kept)?, &mut Cost::default())?;
     // the modal model always has one

@@ -17,6 +17,7 @@ use super::choice::{Choice, Tried};
 use super::choose::{forced_tier, refused};
 use super::guess::guess;
 use super::pose::Pose;
+use super::theory::Found;
 use super::{Cost, Kept, Model, emoc, infinite, rigid};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
@@ -136,7 +137,7 @@ impl Scene {
             return self.plan_of_modes(why);
         }
         let (mut kept, cost) = (Kept::default(), &mut Cost::default());
-        let open = self.with_theory(cost)?;
+        let open = self.with_theory(&mut Found::default(), cost)?;
         let (scene, why) = open.as_ref().map_or((self, None), |(scene, why)| (scene, Some(why)));
         let mut pose = Pose::new(scene, &mut kept)?;
         let cheap: [(Model, Certify, f64); 3] = [

@@ -31,6 +31,15 @@ const RICHER: usize = 2;
 /// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;
 
+/// What was found for the beams of one scene, so that the choice of the theory and its uncertainty do not solve an impact twice.
+#[derive(Default)]
+pub(super) struct Found {
+    /// Expected number of modes by each theory; a slightly different shear coefficient needs as many.
+    needed: Vec<(BeamTheory, Option<usize>)>,
+    /// Restitutions, with the number of modes.
+    restitutions: Vec<(Beam, usize, Option<f64>)>,
+}
+
 /// Restitutions of one impact by both theories.
 struct Theories {
     euler_bernoulli: f64,
@@ -42,7 +51,12 @@ struct Theories {
 impl Theories {
     /// For a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. The inner
     /// `Err` states why it is not known.
-    fn of(scene: &Scene, answer: Option<&Answer>, cost: &mut Cost) -> Result<Result<Theories, String>, InvalidInput> {
+    fn of(
+        scene: &Scene,
+        answer: Option<&Answer>,
+        found: &mut Found,
+        cost: &mut Cost,
+    ) -> Result<Result<Theories, String>, InvalidInput> {
         let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is not a beam".to_owned())) };
         let in_structure = |fault: InvalidInput| fault.within("structure");
         let timoshenko = Beam { theory: Some(BeamTheory::Timoshenko), ..beam.clone() };
@@ -50,20 +64,19 @@ impl Theories {
         beams.extend(timoshenko.theory_variants().map_err(in_structure)?.into_iter().map(|(_, beam)| beam));
         beams.truncate(if answer.is_some() { 4 } else { 2 });
         let least = answer.map_or(0, |answer| answer.modes);
-        let mut found = Vec::new();
+        let mut restitutions = Vec::new();
         for beam in beams {
-            match restitution(&Scene { structure: beam.into(), ..scene.clone() }, least, cost)? {
-                Some(restitution) => found.push(restitution),
+            match found.restitution(scene, beam, least, cost)? {
+                Some(restitution) => restitutions.push(restitution),
                 None => return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned())),
             }
         }
-        let known = |found: &[f64]| match *found {
+        Ok(match restitutions[..] {
             [timoshenko, euler_bernoulli, ref others @ ..] => {
                 Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
             }
             _ => Err("there is no other theory to be compared with".to_owned()),
-        };
-        Ok(known(&found))
+        })
     }
 
     fn difference(&self) -> f64 {
@@ -77,23 +90,48 @@ impl Theories {
     }
 }
 
-/// The restitution with the expected number of modes for the tolerance, with a lower limit, and remainder modes.
-fn restitution(scene: &Scene, least: usize, cost: &mut Cost) -> Result<Option<f64>, InvalidInput> {
-    let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
-    // the modes of this beam must not replace those that are cached for the next scene
-    let kept = &mut Kept::default();
-    let count = match (needed(scene, tolerance, kept, cost)?, scene.modes.count()) {
-        (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
-        (Some(needed), None) => (RICHER * needed).max(least),
-        (None, stated) => stated.unwrap_or_default(),
-    };
-    let scene = Scene { modes: Modes::Count(count), residual_compliance: Some(true), ..scene.clone() };
-    let impact = scene.impact_of(Some(count), kept)?;
-    let Impact { structure, striker, law, start, settings, .. } = &impact;
-    let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..*settings };
-    let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
-    cost.add(&solution.counts, structure.modes.len());
-    Ok(solution.restitution)
+impl Found {
+    /// The restitution of the scene on this beam with the expected number of modes for the tolerance, with a lower limit, and
+    /// remainder modes.
+    fn restitution(
+        &mut self,
+        scene: &Scene,
+        beam: Beam,
+        least: usize,
+        cost: &mut Cost,
+    ) -> Result<Option<f64>, InvalidInput> {
+        // the modes of this beam must not replace those that are cached for the next scene
+        let kept = &mut Kept::default();
+        let scene = Scene { structure: beam.clone().into(), ..scene.clone() };
+        let count = match (self.needed(&scene, kept, cost)?, scene.modes.count()) {
+            (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
+            (Some(needed), None) => (RICHER * needed).max(least),
+            (None, stated) => stated.unwrap_or_default(),
+        };
+        let known = self.restitutions.iter().find(|(known, modes, _)| *known == beam && *modes == count);
+        if let Some((.., restitution)) = known {
+            return Ok(*restitution);
+        }
+        let scene = Scene { modes: Modes::Count(count), residual_compliance: Some(true), ..scene };
+        let impact = scene.impact_of(Some(count), kept)?;
+        let Impact { structure, striker, law, start, settings, .. } = &impact;
+        let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..*settings };
+        let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
+        cost.add(&solution.counts, structure.modes.len());
+        self.restitutions.push((beam, count, solution.restitution));
+        Ok(solution.restitution)
+    }
+
+    fn needed(&mut self, scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usize>, InvalidInput> {
+        let theory = scene.structure.bending_theory().unwrap_or(BeamTheory::Auto);
+        if let Some((_, needed)) = self.needed.iter().find(|(known, _)| *known == theory) {
+            return Ok(*needed);
+        }
+        let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
+        let needed = needed(scene, tolerance, kept, cost)?;
+        self.needed.push((theory, needed));
+        Ok(needed)
+    }
 }
 
 /// Whether the beam of a scene can be solved by both theories.
@@ -104,7 +142,11 @@ fn has_both(scene: &Scene) -> Result<bool, InvalidInput> {
 
 impl Scene {
     /// The scene with the cheapest theory of bending that the tolerance allows, and the reason, if the scene does not state one.
-    pub(crate) fn with_theory(&self, cost: &mut Cost) -> Result<Option<(Scene, String)>, InvalidInput> {
+    pub(super) fn with_theory(
+        &self,
+        found: &mut Found,
+        cost: &mut Cost,
+    ) -> Result<Option<(Scene, String)>, InvalidInput> {
         let Structure::Beam(beam) = &self.structure else { return Ok(None) };
         let open = matches!(beam.theory, None | Some(BeamTheory::Auto));
         let asked = self.model == Model::Auto || self.model == Model::Modal;
@@ -114,7 +156,7 @@ impl Scene {
             return Ok(None);
         }
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        let (theory, why) = match Theories::of(self, None, cost)? {
+        let (theory, why) = match Theories::of(self, None, found, cost)? {
             Ok(theories) if theories.difference() <= SHARE * tolerance => {
                 let difference = small(theories.difference());
                 let why =
@@ -145,14 +187,19 @@ impl Scene {
     }
 
     /// The change of an answer by another theory of bending, as a part of its uncertainty.
-    pub(super) fn judge_theory(&self, answer: Answer, cost: &mut Cost) -> Result<Answer, InvalidInput> {
+    pub(super) fn judge_theory(
+        &self,
+        answer: Answer,
+        found: &mut Found,
+        cost: &mut Cost,
+    ) -> Result<Answer, InvalidInput> {
         let (Some(theory), true) = (answer.theory, answer.restitution.is_some() && has_both(self)?) else {
             return Ok(answer);
         };
         const PART: &str = "beam theory: ";
         let mut not_known: Vec<String> =
             answer.not_known.iter().filter(|why| !why.starts_with(PART)).cloned().collect();
-        let beam_theory = match Theories::of(self, Some(&answer), cost)? {
+        let beam_theory = match Theories::of(self, Some(&answer), found, cost)? {
             Ok(theories) => Some(theories.around(theory).min(1.0)),
             Err(why) => {
                 not_known.push(format!("{PART}{why}"));
