@@ -8,6 +8,7 @@ use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS};
 use super::system::{Link, System};
 use crate::panel::dyadic::step_s;
 use crate::panel::legendre::{Matrix, Nodal, Q, apply, dot};
+use crate::panel::vector::vectorized;
 use std::array;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -50,19 +51,24 @@ impl Damping {
             return;
         }
         let (mut free, mut cross) = (Vec::with_capacity(system.modes.len()), Vec::with_capacity(system.modes.len()));
-        for (k, mode) in system.modes.iter().enumerate() {
-            let Form { bb, bq, qq } = Form::of(mode, step_s(j));
-            let square = system.square[k];
-            free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
-            cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
-            for (_, weights, sum) in missing.iter_mut().filter(|(_, weights, _)| weights[k] != 0.0) {
-                for n in 0..Q {
-                    for m in 0..Q {
-                        sum[n][m] += weights[k] * qq[n][m];
+        vectorized(
+            #[inline(always)]
+            || {
+                for (k, mode) in system.modes.iter().enumerate() {
+                    let Form { bb, bq, qq } = Form::of(mode, step_s(j));
+                    let square = system.square[k];
+                    free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
+                    cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
+                    for (_, weights, sum) in missing.iter_mut().filter(|(_, weights, _)| weights[k] != 0.0) {
+                        for n in 0..Q {
+                            for m in 0..Q {
+                                sum[n][m] += weights[k] * qq[n][m];
+                            }
+                        }
                     }
                 }
-            }
-        }
+            },
+        );
         // another thread may have been first; its result is the same
         let _ = self.by_mode.set(ByMode { free, cross });
         for (place, _, sum) in missing {

@@ -46,6 +46,8 @@ pub(crate) struct Form {
 impl Form {
     const NONE: Form = Form { bb: 0.0, bq: [0.0; Q], qq: [[0.0; Q]; Q] };
 
+    /// Inlined, to be compiled for the vector units of the machine.
+    #[inline(always)]
     pub fn of(mode: &BodyMode, h: f64) -> Form {
         let turned = rate(mode) * h;
         if mode.damping_ratio * mode.omega_rad_s == 0.0 {
@@ -63,6 +65,7 @@ impl Form {
     }
 
     /// Adds the products of the rates at one place, which are those to a unit rate and to unit Legendre forces over `h`.
+    #[inline(always)]
     fn add(&mut self, weight: f64, by_rate: f64, by_force: &Nodal) {
         self.bb += weight * by_rate * by_rate;
         for n in 0..Q {
@@ -74,6 +77,7 @@ impl Form {
     }
 
     /// From a mean over the panel of products of rates, those to forces divided by `h`, to the loss.
+    #[inline(always)]
     fn scaled(mut self, mode: &BodyMode, h: f64) -> Form {
         let scale = 2.0 * mode.damping_ratio * mode.omega_rad_s * h;
         self.bb *= scale;
@@ -130,6 +134,7 @@ impl<const M: usize> Series<M> {
         })
     }
 
+    #[inline(always)]
     fn form(&self, mode: &BodyMode, h: f64) -> Form {
         let (mut by_rate, mut by_force) = ([0.0; M], [[0.0; M]; Q]);
         for (derivative, (powers, forced)) in Self::derivatives(mode, h).zip(self.powers.iter().zip(&self.forced)) {
@@ -151,6 +156,7 @@ impl<const M: usize> Series<M> {
 }
 
 /// Below critical damping, for a mode that turns by more than a few radians.
+#[inline(always)]
 fn by_parts(mode: &BodyMode, h: f64) -> Form {
     let sigma = mode.damping_ratio * mode.omega_rad_s;
     let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
