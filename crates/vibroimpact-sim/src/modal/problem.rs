@@ -68,7 +68,11 @@ impl Structure {
         Structure { modes: modes.into_iter().map(damped).collect() }
     }
 
-    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+    /// Checks that every number lies in the range of the solver.
+    ///
+    /// # Errors
+    /// Names the field, its value and what would be allowed.
+    pub fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
             let fault = |field, value: f64, allowed| Err(InvalidInput::new(("modes", k, field), value, allowed));
             if !(0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s) {
@@ -95,7 +99,18 @@ pub struct Striker {
 }
 
 impl Striker {
-    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+    /// Checks that mass and speed lie in the range of the solver.
+    ///
+    /// # Errors
+    /// Names the field, its value and what would be allowed.
+    ///
+    /// ```
+    /// use vibroimpact_sim::modal::Striker;
+    ///
+    /// let error = Striker { mass_kg: 0.0, speed_m_s: 1.0 }.check().unwrap_err();
+    /// assert!(error.to_string().contains("mass_kg"));
+    /// ```
+    pub fn check(&self) -> Result<(), InvalidInput> {
         let mass = self.mass_kg;
         InvalidInput::unless(
             (SCALE_MIN..=SCALE_MAX).contains(&mass) || mass == f64::INFINITY,
@@ -129,7 +144,11 @@ impl Start {
         Start { amplitude: vec![0.0; modes], rate: vec![0.0; modes], gap_m: 0.0 }
     }
 
-    pub(crate) fn check(&self, modes: usize) -> Result<(), InvalidInput> {
+    /// Checks that there is one value for each of so many modes, and that all lie in the range of the solver.
+    ///
+    /// # Errors
+    /// Names the field, its value and what would be allowed.
+    pub fn check(&self, modes: usize) -> Result<(), InvalidInput> {
         for (field, values) in [("amplitude", &self.amplitude), ("rate", &self.rate)] {
             InvalidInput::unless(values.len() == modes, field, format!("{} values", values.len()), "one value a mode")?;
             for (k, value) in values.iter().enumerate() {
@@ -180,7 +199,11 @@ impl Default for Settings {
 }
 
 impl Settings {
-    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+    /// Checks that every setting lies in the range of the solver.
+    ///
+    /// # Errors
+    /// Names the field, its value and what would be allowed.
+    pub fn check(&self) -> Result<(), InvalidInput> {
         InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
         InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")?;
         InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;

@@ -1,7 +1,7 @@
 //! The scene as input of all models: striker, law, the scales of the contact, and the modes that are needed.
 
 use contact_models::{ContactLaw, Law, Memory};
-use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Settings, Striker, Structure};
 
 use super::{Cost, DEFAULT_TOLERANCE, Kept};
 use crate::in_scene::in_scene;
@@ -105,15 +105,11 @@ impl<'a> Pose<'a> {
             let allowed = "a number from 1e-10 to 0.5 where the program chooses the modes";
             return Err(InvalidInput::new("tolerance", number(tolerance), allowed));
         }
-        // a solver without modes checks the striker, and the tolerance where it is the solver's own
-        let checked = Settings {
-            tolerance: if chosen { settings.tolerance } else { tolerance },
-            max_steps: 1,
-            estimate_uncertainty: false,
-            ..settings
-        };
-        let rigid = Solver::new(&Structure::default()).map_err(in_scene)?;
-        rigid.solve(&striker, &law, None, &checked).map_err(in_scene)?;
+        striker.check().map_err(in_scene)?;
+        if !chosen {
+            // the tolerance is the solver's own
+            Settings { tolerance, ..settings }.check().map_err(in_scene)?;
+        }
         let source = match &scene.structure {
             scene::Structure::Beam(beam) => {
                 // an empty list of modes checks location, segments and damping
@@ -129,7 +125,7 @@ impl<'a> Pose<'a> {
             }
             listed => {
                 let modes = listed.modes(scene.place(), scene.modes.count())?;
-                Solver::new(&Structure { modes: modes.clone() }).map_err(in_scene)?;
+                Structure { modes: modes.clone() }.check().map_err(in_scene)?;
                 let whole_m_n = match listed {
                     scene::Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
                         let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
