@@ -7,7 +7,7 @@
 use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS};
 use super::system::{Link, System};
 use crate::panel::dyadic::step_s;
-use crate::panel::legendre::{Matrix, Nodal, Q, apply, dot};
+use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot};
 use crate::panel::vector::vectorized;
 use std::array;
 use std::ops::Range;
@@ -83,7 +83,7 @@ impl Damping {
         damped: &[Range<usize>],
         (amplitude, rate): (&[f64], &[f64]),
         contacts: &[usize],
-        force: &[Nodal],
+        force: &[Legendre],
     ) -> f64 {
         let mut lost = 0.0;
         let Some(ByMode { free, cross }) = self.by_mode.get() else { return lost };
@@ -105,11 +105,11 @@ impl Damping {
                     }
                 }
             }
-            lost -= dot(&by_motion, &force[i]);
+            lost -= dot(&by_motion, &force[i].0);
             for (j, &other) in contacts[..=i].iter().enumerate() {
                 if let Some(pair) = self.pairs[c * system.links.len() + other].get() {
                     let twice = if j < i { 2.0 } else { 1.0 };
-                    lost += twice * dot(&force[i], &apply(pair, &force[j]));
+                    lost += twice * dot(&force[i].0, &apply(pair, &force[j].0));
                 }
             }
         }
@@ -124,11 +124,11 @@ pub(crate) fn lost_within(
     h: f64,
     (amplitude, rate): (&[f64], &[f64]),
     contacts: &[usize],
-    force: &[Nodal],
+    force: &[Legendre],
 ) -> f64 {
     let rule = &*COARSE;
     // effect of a contact force on a mode of unit weight, term by term
-    let push = |force: &Nodal| -> Vec<[f64; COARSE_NODES]> {
+    let push = |Legendre(force): &Legendre| -> Vec<[f64; COARSE_NODES]> {
         let term = |rows: &[[f64; COARSE_NODES]; Q]| array::from_fn(|q| (0..Q).map(|n| rows[n][q] * force[n]).sum());
         rule.forced.iter().take(TERMS).map(term).collect()
     };

@@ -16,7 +16,7 @@
 //! - a faster one that vibrates little or not at all: quadrature on panels that grow away from the start.
 
 use crate::panel::forcing::rate;
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
 use num_complex::Complex64;
@@ -235,7 +235,7 @@ fn by_quadrature(mode: &BodyMode, h: f64) -> Form {
             let (_, velocity) = response(mode, x * h);
             // P_n on [0, x] in the polynomials of that part
             let values = BASIS.nodes.map(|node| legendre(x * node));
-            let by_force = array::from_fn(|n| dot(&BASIS.coefficients(&values.map(|value| value[n])), &velocity) / h);
+            let by_force = array::from_fn(|n| dot(&Legendre::through(&values.map(|value| value[n])).0, &velocity) / h);
             form.add(w * (to - from), propagate(mode, x * h).p22, &by_force);
         }
         from = to;
@@ -256,7 +256,7 @@ mod tests {
             for &(y, w) in &BASIS.fine {
                 let x = (i as f64 + y) / panels as f64;
                 let (_, velocity) = response(mode, x * h);
-                let part = |n: usize| BASIS.coefficients(&BASIS.nodes.map(|node| legendre(x * node)[n]));
+                let part = |n: usize| Legendre::through(&BASIS.nodes.map(|node| legendre(x * node)[n])).0;
                 let by_force = array::from_fn(|n| dot(&part(n), &velocity) / h);
                 form.add(w / panels as f64, propagate(mode, x * h).p22, &by_force);
             }

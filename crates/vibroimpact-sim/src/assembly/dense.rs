@@ -3,7 +3,7 @@
 use super::load::Loads;
 use super::solution::{ContactSample, Motion};
 use super::system::System;
-use crate::panel::legendre::{BASIS, Nodal, evaluate};
+use crate::panel::legendre::{Legendre, Nodal};
 use crate::panel::oscillator::{propagate, response};
 use contact_models::{Branch, ContactLaw};
 
@@ -35,8 +35,8 @@ pub(crate) struct Stretch {
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     pub contacts: Vec<Seen>,
-    /// Legendre coefficients of the forces of the closed contacts.
-    pub forces: Vec<(usize, Nodal)>,
+    /// The forces of the closed contacts.
+    pub forces: Vec<(usize, Legendre)>,
 }
 
 /// A stretch with the data that its evaluation needs.
@@ -57,8 +57,7 @@ impl Panel<'_> {
         }
         for (c, force) in stretch.forces.iter().filter(|_| h > 0.0) {
             // the force as a polynomial on the part alone
-            let part = h / stretch.length_s;
-            let force = &BASIS.coefficients(&BASIS.nodes.map(|s| evaluate(force, s * part)));
+            let Legendre(force) = &force.restricted(h / stretch.length_s);
             for span in &self.system.links[*c].spans {
                 for (k, psi) in span.modes.clone().zip(&span.psi).filter(|(_, psi)| **psi != 0.0) {
                     let (moved, pushed) = match self.system.modes[k].is_rigid() {

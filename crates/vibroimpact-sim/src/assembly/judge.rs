@@ -8,7 +8,7 @@ use super::motion::{March, Target};
 use super::state::Touch;
 use super::system::Span;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, truncation};
+use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
 use crate::panel::vector::{sum_over, vectorized};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
@@ -166,7 +166,7 @@ impl<'a> March<'a> {
         let of = |(other, solved): (&usize, &Collocated)| {
             // no product of weights is larger
             let weight = (links[c].mobility * links[*other].mobility).sqrt();
-            weight * TAIL * truncation(&BASIS.coefficients(&solved.force))
+            weight * TAIL * Legendre::through(&solved.force).truncation()
         };
         let shares = |(other, _): &(&usize, &Collocated)| self.system.neighbours[c].contains(other);
         closed.iter().zip(solved).filter(shares).map(of).sum()
@@ -177,8 +177,8 @@ impl<'a> March<'a> {
         let pull = |c: &usize| {
             let (force, h) = self.states[*c].touch()?.previous?;
             // P_n' is n (n+1) at the end of [0, 1]
-            let slope: f64 = force.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
-            Some(Pull { link: &self.system.links[*c], force_n: evaluate(&force, 1.0), rate_n_s: slope / h })
+            let slope: f64 = force.0.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
+            Some(Pull { link: &self.system.links[*c], force_n: force.at(1.0), rate_n_s: slope / h })
         };
         closed.iter().filter_map(pull).collect()
     }

@@ -6,7 +6,7 @@ use super::motion::{Horizon, March, Target};
 use super::terminal::{self, Landed, Window};
 use super::transition::SINGULAR;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{BASIS, Nodal, Q, evaluate, truncation};
+use crate::panel::legendre::{BASIS, Legendre, Q};
 
 /// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
 const LANDING: f64 = 2.5;
@@ -43,7 +43,7 @@ impl<'a> March<'a> {
         };
         let (law, tolerance) = (self.law(target.contact), self.impulse_tolerance(target.contact));
         let Some(boundary) = state.ends.get(target.boundary) else { return f64::INFINITY };
-        if boundary.per_rate != 0.0 || SINGULAR * evaluate(&force, 1.0) * left <= 0.1 * tolerance {
+        if boundary.per_rate != 0.0 || SINGULAR * force.at(1.0) * left <= 0.1 * tolerance {
             return f64::INFINITY;
         }
         let (start, slope) = (state.overlap, state.rate * left);
@@ -53,7 +53,7 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, moved / left).force_n
         });
         self.counts.law_evaluations += Q as u64;
-        let excess = truncation(&BASIS.coefficients(&force)) * left / tolerance;
+        let excess = Legendre::through(&force).truncation() * left / tolerance;
         if excess > 1.0 { shorter(left, excess) } else { f64::INFINITY }
     }
 
@@ -207,7 +207,7 @@ impl<'a> March<'a> {
 
     /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
-        let of = |(c, force): (&usize, &Nodal)| truncation(force) * landed.length / self.impulse_tolerance(*c);
+        let of = |(c, force): (&usize, &Legendre)| force.truncation() * landed.length / self.impulse_tolerance(*c);
         window.contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
     }
 

@@ -51,7 +51,7 @@ use super::system::System;
 use super::tables::Tables;
 use super::wave::{Wave, integral, turned_mean};
 use crate::panel::dyadic::{level_within, step_s};
-use crate::panel::legendre::Nodal;
+use crate::panel::legendre::{Legendre, Nodal};
 use num_complex::Complex64;
 use std::ops::Range;
 
@@ -126,8 +126,8 @@ impl Account {
         account
     }
 
-    /// Adds a panel of `h` that is about to be accepted, with Legendre coefficients of the contact forces.
-    pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
+    /// Adds a panel of `h` that is about to be accepted, with the contact forces.
+    pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Legendre]) {
         let system = start.system;
         self.panels += 1;
         if !self.damped.is_empty() {
@@ -151,7 +151,7 @@ impl Account {
             self.load_work_j += work_on_rigid(start, h, k, contacts, force);
         }
         for (&c, force) in contacts.iter().zip(force) {
-            self.piece.impulse[c] += h * force[0];
+            self.piece.impulse[c] += h * force.mean();
             for (harmonic, turned) in start.loads.harmonics.iter().zip(&mut self.piece.turned) {
                 turned[c] += harmonic.turn(start.time_s) * h * turned_mean(harmonic.omega_rad_s * h, force);
             }
@@ -159,7 +159,7 @@ impl Account {
     }
 
     /// Adds the work of a contact on a panel; `moved` is the increase of its overlap up to the nodes, and up to the end.
-    pub fn contact(&mut self, force: &Nodal, moved: &Nodal, moved_at_end: f64) {
+    pub fn contact(&mut self, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
         add_work(&mut self.contact_work_j, force, moved, moved_at_end);
     }
 
@@ -300,13 +300,13 @@ fn damped_energy(damped: &[Range<usize>], now: &Moment) -> f64 {
 }
 
 /// Work of the straight lines on a rigid mode within a panel of `h`.
-fn work_on_rigid(start: &Moment, h: f64, k: usize, contacts: &[usize], force: &[Nodal]) -> f64 {
+fn work_on_rigid(start: &Moment, h: f64, k: usize, contacts: &[usize], force: &[Legendre]) -> f64 {
     let (f0, slope) = start.loads.line(k, start.time_s);
     let mut pushed = [0.0; 3];
     for (&c, force) in contacts.iter().zip(force) {
         for span in start.system.links[c].spans.iter().filter(|span| span.modes.contains(&k)) {
             let psi = span.psi[k - span.modes.start];
-            pushed.iter_mut().zip(force).for_each(|(pushed, force)| *pushed -= psi * force);
+            pushed.iter_mut().zip(&force.0).for_each(|(pushed, force)| *pushed -= psi * force);
         }
     }
     let [g0, g1, g2] = pushed;

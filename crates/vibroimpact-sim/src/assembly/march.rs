@@ -14,7 +14,6 @@ use super::solution::{Outcome, Reason};
 use super::state::State;
 use super::trial::Trial;
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
-use crate::panel::legendre::{evaluate, truncation};
 use contact_models::{ContactLaw, LARGEST, check_contract};
 
 /// A panel is doubled when its error is this many times below the tolerance.
@@ -149,8 +148,8 @@ impl<'a> March<'a> {
         for (i, &c) in contacts[..closed].iter().enumerate() {
             let tolerance = self.impulse_tolerance(c);
             // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
-            let missed = (self.force_at(c, trial.end[i]) - evaluate(&trial.force[i], 1.0)).abs();
-            error = error.max(truncation(&trial.force[i]) * h / tolerance).max(missed * h / tolerance);
+            let missed = (self.force_at(c, trial.end[i]) - trial.force[i].at(1.0)).abs();
+            error = error.max(trial.force[i].truncation() * h / tolerance).max(missed * h / tolerance);
         }
         if error.is_nan() || error > 1.0 {
             // the error decreases at least like h^5, except on the first panels of a contact, which are short enough from the start

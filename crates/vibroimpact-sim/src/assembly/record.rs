@@ -5,11 +5,11 @@ use super::ledger::Moment;
 use super::miss::Distance;
 use super::motion::March;
 use super::state::State;
-use crate::panel::legendre::Nodal;
+use crate::panel::legendre::Legendre;
 
 impl<'a> March<'a> {
     /// Adds a panel that is about to be accepted to the energy balance, and shows it to the observer.
-    pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Nodal]) {
+    pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Legendre]) {
         if let Some(account) = &mut self.account {
             let (amplitude, rate) = (&self.amplitude, &self.rate);
             let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
@@ -62,7 +62,7 @@ impl<'a> March<'a> {
         Some(Distance { is_closed: true, distance_m, approach_m_s: -state.rate })
     }
 
-    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Nodal]) -> Stretch {
+    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Legendre]) -> Stretch {
         let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
         Stretch {
             events: Vec::new(),

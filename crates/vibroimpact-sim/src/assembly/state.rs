@@ -3,7 +3,7 @@
 use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
-use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply};
 use crate::panel::peak::Peak;
 use contact_models::{Boundary, Branch, Memory};
 
@@ -51,8 +51,8 @@ pub(crate) struct Touch {
     pub residue: f64,
     /// The corresponding error of the rate (m/s), if that function depends on it.
     pub rate_residue: f64,
-    /// Legendre coefficients of the last panel's force, and its length.
-    pub previous: Option<(Nodal, f64)>,
+    /// The last panel's force, and its length.
+    pub previous: Option<(Legendre, f64)>,
     pub interval: Interval,
     pub peak_force: Peak,
     pub peak_compression: Peak,
@@ -94,19 +94,19 @@ impl State {
         }
     }
 
-    /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and by coefficients, its
+    /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
     /// compression and rate at the nodes, and its compression at the end.
-    pub fn book(&mut self, h: f64, solved: &Collocated, coefficients: Nodal, rate: &Nodal, end: f64) {
+    pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, end: f64) {
         let Phase::Closed(touch) = &mut self.phase else { return };
         let Collocated { force: nodal, compression, force_by_rate, .. } = solved;
         touch.force_by_rate = *force_by_rate;
-        touch.previous = Some((coefficients, h));
-        touch.interval.impulse_n_s += h * coefficients[0];
+        touch.previous = Some((force, h));
+        touch.interval.impulse_n_s += h * force.mean();
         touch.peak_force.note(nodal);
         touch.peak_compression.note(compression);
         let statistics = &mut self.statistics;
         statistics.contact_time_s += h;
-        statistics.impulse_n_s += h * coefficients[0];
+        statistics.impulse_n_s += h * force.mean();
         let weights = &BASIS.weights;
         for i in 0..Q {
             let (weight, power) = (h * weights[i], nodal[i] * rate[i]);
@@ -114,7 +114,7 @@ impl State {
             statistics.compression_work_j += weight * power.max(0.0);
         }
         let moved = compression.map(|at| at - self.overlap);
-        add_work(&mut statistics.work_j, &coefficients, &moved, end - self.overlap);
+        add_work(&mut statistics.work_j, &force, &moved, end - self.overlap);
     }
 
     /// The interval that ends now.
@@ -132,11 +132,11 @@ impl State {
     }
 }
 
-/// Adds the work of a contact on a panel: its force by coefficients, the increase of its compression up to the nodes, and up to the
+/// Adds the work of a contact on a panel: its force, the increase of its compression up to the nodes, and up to the
 /// end. It is integrated by parts, because the compression is more accurate than its rate.
-pub(crate) fn add_work(work_j: &mut f64, force: &Nodal, moved: &Nodal, moved_at_end: f64) {
-    let slope = apply(&BASIS.derivatives[1], force);
-    *work_j += evaluate(force, 1.0) * moved_at_end;
+pub(crate) fn add_work(work_j: &mut f64, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
+    let slope = apply(&BASIS.derivatives[1], &force.0);
+    *work_j += force.at(1.0) * moved_at_end;
     for i in 0..Q {
         *work_j -= BASIS.weights[i] * slope[i] * moved[i];
     }

@@ -7,7 +7,7 @@ use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
 use crate::panel::forcing::{Compliance, Way, part};
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
@@ -168,8 +168,8 @@ impl Tables {
         self.rotation(system, j).apply(amplitude, rate);
     }
 
-    /// Adds the effect of a contact force with these Legendre coefficients on the modes within a panel.
-    pub fn push(&self, j: i32, link: &Link, force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+    /// Adds the effect of a contact force on the modes within a panel.
+    pub fn push(&self, j: i32, link: &Link, force: &Legendre, amplitude: &mut [f64], rate: &mut [f64]) {
         if let Some(level) = self.expanded(j) {
             level.forced.push(&link.spans, force, amplitude, rate);
         }
@@ -201,11 +201,11 @@ fn unset<T>(contacts: usize) -> Vec<OnceLock<T>> {
 
 /// `state[k] -= psi[k] sum_n table[n][k] force[n]`, in one pass.
 #[inline(always)]
-fn accumulate(state: &mut [f64], psi: &[f64], table: &Rows<Q>, first: usize, force: &Nodal) {
+fn accumulate(state: &mut [f64], psi: &[f64], table: &Rows<Q>, first: usize, force: &Legendre) {
     let n = psi.len();
     let state = &mut state[..n];
     let [t0, t1, t2, t3, t4, t5, t6, t7] = table.part(first, n);
-    let [f0, f1, f2, f3, f4, f5, f6, f7] = *force;
+    let [f0, f1, f2, f3, f4, f5, f6, f7] = force.0;
     for k in 0..n {
         let response =
             (t0[k] * f0 + t1[k] * f1 + t2[k] * f2 + t3[k] * f3) + (t4[k] * f4 + t5[k] * f5 + t6[k] * f6 + t7[k] * f7);
@@ -282,8 +282,8 @@ impl Forced {
         )
     }
 
-    /// Adds the effect of a contact force with these Legendre coefficients on the modes within a panel.
-    pub fn push(&self, spans: &[Span], force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+    /// Adds the effect of a contact force on the modes within a panel.
+    pub fn push(&self, spans: &[Span], force: &Legendre, amplitude: &mut [f64], rate: &mut [f64]) {
         vectorized(
             #[inline(always)]
             || {
@@ -380,8 +380,8 @@ impl Response {
         Response { nodes, end, end_rate }
     }
 
-    /// Overlap and its rate at the end of a panel, to a force with these Legendre coefficients.
-    pub fn at_end(&self, force: &Nodal) -> (f64, f64) {
+    /// Overlap and its rate at the end of a panel, to a force.
+    pub fn at_end(&self, Legendre(force): &Legendre) -> (f64, f64) {
         (dot(&self.end, force), dot(&self.end_rate, force))
     }
 }

@@ -8,7 +8,7 @@ use super::load::Loads;
 use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot, evaluate, evaluate_at};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot};
 use crate::panel::vector::{LANES, vectorized};
 use std::array;
 
@@ -33,9 +33,9 @@ pub(crate) struct Window {
 #[derive(Debug)]
 pub(crate) struct Landed {
     pub length: f64,
-    /// Of the closed contacts: values at the nodes, and Legendre coefficients of the force.
+    /// Of the closed contacts: values at the nodes, and the force.
     pub solved: Vec<Collocated>,
-    pub force: Vec<Nodal>,
+    pub force: Vec<Legendre>,
     /// Overlap of every contact of the window at the nodes.
     pub overlap: Vec<Nodal>,
     /// Overlap and its first two derivatives at the end.
@@ -139,7 +139,7 @@ impl Window {
         mut overlap: Vec<Nodal>,
         responses: &[Option<Matrix>],
     ) -> Landed {
-        let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
+        let force = solved.iter().map(|solved| Legendre::through(&solved.force)).collect();
         for (c, overlap) in overlap.iter_mut().enumerate() {
             respond(overlap, &responses[c * self.closed..(c + 1) * self.closed], &solved);
         }
@@ -156,9 +156,9 @@ impl Window {
         for (other, force) in from.force.iter().enumerate() {
             let nodal = match part == 1.0 {
                 true => from.solved[other].force,
-                false => evaluate_at(force, &BASIS.nodes.map(|s| s * part)),
+                false => force.at_each(&BASIS.nodes.map(|s| s * part)),
             };
-            add_end(&self.kernels[c * self.closed + other], length, &nodal, evaluate(force, part), &mut end);
+            add_end(&self.kernels[c * self.closed + other], length, &nodal, force.at(part), &mut end);
         }
         end
     }
@@ -166,7 +166,7 @@ impl Window {
     /// The same forces, truncated or extrapolated to another length.
     pub fn carried(&self, from: &Landed, length: f64) -> Landed {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
-        let carry = |nodal: &Nodal| evaluate_at(&BASIS.coefficients(nodal), &places);
+        let carry = |nodal: &Nodal| Legendre::through(nodal).at_each(&places);
         let carried = |solved: &Collocated| Collocated {
             force: carry(&solved.force),
             compression: carry(&solved.compression),

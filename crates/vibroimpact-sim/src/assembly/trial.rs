@@ -6,7 +6,7 @@ use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
-use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate_at, slopes};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, slopes};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 const NEWTON_SHARE: f64 = 1e-2;
@@ -18,9 +18,9 @@ pub(super) struct Trial<'a> {
     pub contacts: Vec<usize>,
     pub closed: usize,
     unknowns: Vec<Unknown<'a>>,
-    /// The closed contacts' forces, by nodes and by coefficients.
+    /// The closed contacts' forces, at the nodes and as polynomials.
     pub solved: Vec<Collocated>,
-    pub force: Vec<Nodal>,
+    pub force: Vec<Legendre>,
     /// All contacts' overlaps at the nodes, and at the end with their rates.
     pub overlap: Vec<Nodal>,
     pub end: Vec<(f64, f64)>,
@@ -45,7 +45,7 @@ impl<'a> March<'a> {
             return false;
         }
         force.clear();
-        force.extend(solved.iter().map(|solved| BASIS.coefficients(&solved.force)));
+        force.extend(solved.iter().map(|solved| Legendre::through(&solved.force)));
         self.watch(h, contacts, closed, force);
         if contacts.len() > closed {
             let (open, closed) = (&contacts[closed..], &contacts[..closed]);
@@ -95,8 +95,8 @@ impl<'a> March<'a> {
         let unknown = move |(i, &c): (usize, &usize)| {
             let state = &self.states[c];
             let touch = state.touch()?;
-            let guess = touch.previous.map_or([0.0; Q], |(coefficients, length)| {
-                evaluate_at(&coefficients, &BASIS.nodes.map(|s| 1.0 + s * h / length)).map(|force| force.max(0.0))
+            let guess = touch.previous.map_or([0.0; Q], |(force, length)| {
+                force.at_each(&BASIS.nodes.map(|s| 1.0 + s * h / length)).map(|force| force.max(0.0))
             });
             Some(Unknown {
                 law: self.law(c),
@@ -157,7 +157,7 @@ impl<'a> March<'a> {
         contacts: &[usize],
         closed: usize,
         solved: &[Collocated],
-        force: &[Nodal],
+        force: &[Legendre],
         end: impl Fn(usize) -> (f64, f64),
     ) {
         self.counts.contact_steps += 1;

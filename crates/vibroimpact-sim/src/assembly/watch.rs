@@ -4,7 +4,7 @@ use super::enclosure::{FlightBounds, bend_of_loads};
 use super::motion::March;
 use super::state::Phase;
 use super::system::Span;
-use crate::panel::legendre::Nodal;
+use crate::panel::legendre::Legendre;
 use crate::panel::vector::{sum_over, vectorized};
 
 impl<'a> March<'a> {
@@ -16,7 +16,7 @@ impl<'a> March<'a> {
     }
 
     /// Adds the open contacts that may close within `h` while the closed ones have these forces.
-    pub(super) fn watch(&mut self, h: f64, contacts: &mut Vec<usize>, closed: usize, force: &[Nodal]) {
+    pub(super) fn watch(&mut self, h: f64, contacts: &mut Vec<usize>, closed: usize, force: &[Legendre]) {
         let lasting = self.lasting();
         for c in 0..self.states.len() {
             if self.states[c].is_closed() || contacts.contains(&c) {
@@ -39,7 +39,7 @@ impl<'a> March<'a> {
 
     /// Whether an open contact can close within `h`. Free motion from `a` and `a'` displaces a mode by at most
     /// `min(omega h, 2) |a| + h |a'|`. An impulse changes the overlap by at most `h` times the change of its rate.
-    fn may_close(&self, c: usize, h: f64, (closed, force): (&[usize], &[Nodal])) -> bool {
+    fn may_close(&self, c: usize, h: f64, (closed, force): (&[usize], &[Legendre])) -> bool {
         let (links, state) = (&self.system.links, &self.states[c]);
         let (mut overlap, mut reach, mut size) = (self.loads.overlap(c, self.time_s).0, 0.0, state.reference.abs());
         for Span { modes, psi } in &links[c].spans {
@@ -63,7 +63,7 @@ impl<'a> March<'a> {
             size += most;
         }
         for (other, force) in closed.iter().zip(force).filter(|(other, _)| self.system.neighbours[c].contains(other)) {
-            let impulse = h * force.iter().map(|coefficient| coefficient.abs()).sum::<f64>();
+            let impulse = h * force.0.iter().map(|coefficient| coefficient.abs()).sum::<f64>();
             reach += h * impulse * (links[c].mobility * links[*other].mobility).sqrt();
         }
         reach += self.loads.most_moved(c, self.time_s, h);

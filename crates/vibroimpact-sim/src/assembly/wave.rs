@@ -1,6 +1,6 @@
 //! Integrals with `e^{i Omega t}`.
 
-use crate::panel::legendre::{Nodal, Q};
+use crate::panel::legendre::{Legendre, Nodal, Q};
 use num_complex::Complex64;
 
 /// `e^{i Omega t}` over a stretch of time.
@@ -31,16 +31,16 @@ pub(crate) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
 }
 
 /// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
-pub(crate) fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
+pub(crate) fn turned_mean(angle: f64, force: &Legendre) -> Complex64 {
     Complex64::cis(0.5 * angle) * centred_mean(&spherical_bessel(0.5 * angle), force)
 }
 
 /// The same, of `e^{i angle (x - 1/2)}`, from the spherical Bessel functions of half the angle:
 /// `int_0^1 e^{i angle (x - 1/2)} P_n(2x-1) dx = i^n j_n(angle/2)`.
-pub(crate) fn centred_mean(bessel: &Nodal, force: &Nodal) -> Complex64 {
+pub(crate) fn centred_mean(bessel: &Nodal, force: &Legendre) -> Complex64 {
     let part = |first: usize| {
         let sign = |n: usize| if n % 4 < 2 { 1.0 } else { -1.0 };
-        (first..Q).step_by(2).map(|n| sign(n) * force[n] * bessel[n]).sum::<f64>()
+        (first..Q).step_by(2).map(|n| sign(n) * force.0[n] * bessel[n]).sum::<f64>()
     };
     Complex64::new(part(0), part(1))
 }
@@ -106,7 +106,7 @@ mod tests {
                     })
                     .map(|(x, w)| w * legendre(x)[n] * Complex64::cis(angle * x))
                     .sum();
-                let error = (turned_mean(angle, &force) - known).norm();
+                let error = (turned_mean(angle, &Legendre(force)) - known).norm();
                 assert!(error < 1e-14, "angle {angle}, degree {n}: {error:e}");
             }
         }

@@ -1,7 +1,7 @@
 //! The force of one contact as it is computed, and its integrals over time.
 
 use crate::assembly::wave::{centred_mean, spherical_bessel};
-use crate::panel::legendre::Nodal;
+use crate::panel::legendre::{Legendre, Nodal};
 use num_complex::Complex64;
 
 /// The contact force from one time to another: a polynomial on each panel.
@@ -16,8 +16,8 @@ pub struct Pulse {
 pub(super) struct Panel {
     pub start_s: f64,
     pub length_s: f64,
-    /// Legendre coefficients (N).
-    pub force: Nodal,
+    /// The force (N).
+    pub force: Legendre,
 }
 
 impl Pulse {
@@ -79,7 +79,8 @@ impl Pulse {
     /// `int F^2 dt` (N^2 s).
     pub fn square_n2_s(&self) -> f64 {
         // int_0^1 P_n(2s-1)^2 ds = 1/(2n+1)
-        let square = |force: &Nodal| force.iter().enumerate().map(|(n, f)| f * f / (2 * n + 1) as f64).sum::<f64>();
+        let square =
+            |Legendre(force): &Legendre| force.iter().enumerate().map(|(n, f)| f * f / (2 * n + 1) as f64).sum::<f64>();
         self.panels.iter().map(|panel| panel.length_s * square(&panel.force)).sum()
     }
 }

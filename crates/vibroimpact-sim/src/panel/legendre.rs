@@ -1,11 +1,10 @@
 //! The step's polynomial basis: Legendre polynomials on [0, 1] and their Gauss nodes.
 
+pub(crate) use super::polynomial::{Legendre, Nodal, Q, dot, legendre};
 use gauss_quad::legendre::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
-/// Number of nodes on a step. The force on a step is a polynomial of degree `Q - 1`.
-pub(crate) const Q: usize = 8;
 /// Powers of time in a Taylor series over a terminal step.
 pub(crate) const TAYLOR: usize = 14;
 /// Powers of time in a Taylor series over a dyadic step, and about its middle: enough for [`SLOW`] rad.
@@ -16,7 +15,6 @@ pub(crate) const SLOW: f64 = 6.0;
 /// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
 const FINE: usize = 20;
 
-pub(crate) type Nodal = [f64; Q];
 /// A matrix that acts on nodal values, stored by columns: `matrix[j][i]` is the effect of value `j` on value `i`.
 pub(crate) type Matrix = [[f64; Q]; Q];
 
@@ -50,64 +48,6 @@ pub(crate) struct Basis {
 /// The basis, built at first use.
 pub(crate) static BASIS: LazyLock<Basis> = LazyLock::new(Basis::new);
 
-/// Of the recurrence `(n+1) P_{n+1} = (2n+1) x P_n - n P_{n-1}`.
-const FACTORS: [(f64, f64); Q] = {
-    let mut factors = [(0.0, 0.0); Q];
-    let mut n = 1;
-    while n < Q {
-        factors[n] = ((2 * n + 1) as f64 / (n + 1) as f64, n as f64 / (n + 1) as f64);
-        n += 1;
-    }
-    factors
-};
-
-/// `P_0 .. P_{Q-1}` of `2 s - 1`.
-pub(crate) fn legendre(s: f64) -> Nodal {
-    let x = 2.0 * s - 1.0;
-    let mut p = [1.0; Q];
-    p[1] = x;
-    for n in 1..Q - 1 {
-        p[n + 1] = FACTORS[n].0 * x * p[n] - FACTORS[n].1 * p[n - 1];
-    }
-    p
-}
-
-/// The polynomial with these Legendre coefficients at `s`.
-pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
-    dot(coefficients, &legendre(s))
-}
-
-/// The same at eight places.
-pub(crate) fn evaluate_at(coefficients: &Nodal, places: &Nodal) -> Nodal {
-    let x = places.map(|s| 2.0 * s - 1.0);
-    let (mut before, mut last) = ([1.0; Q], x);
-    let mut sum = [0.0; Q];
-    for i in 0..Q {
-        sum[i] = coefficients[0] + coefficients[1] * x[i];
-    }
-    for n in 1..Q - 1 {
-        let (with, without) = FACTORS[n];
-        for i in 0..Q {
-            let next = with * x[i] * last[i] - without * before[i];
-            sum[i] += coefficients[n + 1] * next;
-            (before[i], last[i]) = (last[i], next);
-        }
-    }
-    sum
-}
-
-/// Legendre coefficients of the derivative of the polynomial with these coefficients, both on [0, 1].
-pub(crate) fn derivative(coefficients: &Nodal) -> Nodal {
-    // d/ds P_n(2s-1) = 2 (2m+1) P_m summed over m = n-1, n-3, ..
-    let mut slope = [0.0; Q];
-    for n in 0..Q {
-        for m in (0..n).rev().step_by(2) {
-            slope[m] += 2.0 * (2 * m + 1) as f64 * coefficients[n];
-        }
-    }
-    slope
-}
-
 /// `1/n`.
 pub(crate) const RECIPROCAL: [f64; SERIES + 2] = {
     let mut table = [f64::INFINITY; SERIES + 2];
@@ -118,15 +58,6 @@ pub(crate) const RECIPROCAL: [f64; SERIES + 2] = {
     }
     table
 };
-
-/// Inner product of two short vectors.
-pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..Q {
-        sum += a[i] * b[i];
-    }
-    sum
-}
 
 /// Adds a multiple of a short vector.
 pub(crate) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
@@ -153,12 +84,21 @@ pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     std::array::from_fn(|i| (basis.slope_from_start[i] * start + from_nodes[i]) / h)
 }
 
-/// Truncation estimate of a polynomial: its next two coefficients, extrapolated from the last two and the two before. Pairs are
-/// used because a single coefficient may vanish by accident.
-pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
-    let last = coefficients[Q - 1].abs().max(coefficients[Q - 2].abs());
-    let before = coefficients[Q - 3].abs().max(coefficients[Q - 4].abs());
-    if last < before { last * (last / before) } else { last }
+impl Legendre {
+    /// The polynomial with these values at the nodes.
+    pub fn through(nodal: &Nodal) -> Legendre {
+        Legendre(apply(&BASIS.to_coefficients, nodal))
+    }
+
+    /// Its values at the nodes.
+    pub fn nodal(&self) -> Nodal {
+        BASIS.nodes.map(|s| self.at(s))
+    }
+
+    /// The same polynomial on [0, `part`], where that is scaled to [0, 1].
+    pub fn restricted(&self, part: f64) -> Legendre {
+        Legendre::through(&BASIS.nodes.map(|s| self.at(s * part)))
+    }
 }
 
 /// A Gauss-Legendre rule on (0, 1).
@@ -249,13 +189,13 @@ impl Basis {
         }
         let mut derivatives = [[[0.0; Q]; Q]; Q];
         for n in 0..Q {
-            let mut polynomial = [0.0; Q];
-            polynomial[n] = 1.0;
+            let mut polynomial = Legendre([0.0; Q]);
+            polynomial.0[n] = 1.0;
             for k in 0..Q {
                 for i in 0..Q {
-                    derivatives[k][n][i] = evaluate(&polynomial, nodes[i]);
+                    derivatives[k][n][i] = polynomial.at(nodes[i]);
                 }
-                polynomial = derivative(&polynomial);
+                polynomial = polynomial.derivative();
             }
         }
 
@@ -294,11 +234,6 @@ impl Basis {
         }
         terms
     }
-
-    /// Legendre coefficients of the polynomial with these nodal values.
-    pub fn coefficients(&self, nodal: &Nodal) -> Nodal {
-        apply(&self.to_coefficients, nodal)
-    }
 }
 
 /// Weights of the derivative at `at` of the polynomial through 0 and the nodes.
@@ -331,12 +266,8 @@ mod tests {
     #[test]
     fn the_constant_matrices_are_exact_on_polynomials() {
         let basis = &*BASIS;
-        // f(s) = s^3: coefficients reproduce it, slopes differentiate it, powers integrate it
+        // f(s) = s^3: slopes differentiate it, powers integrate it
         let cube: Nodal = basis.nodes.map(|c| c.powi(3));
-        assert!((evaluate(&basis.coefficients(&cube), 0.37) - 0.37f64.powi(3)).abs() < 1e-14);
-        let (coefficients, places) = (basis.coefficients(&cube), basis.nodes.map(|c| 1.2 * c));
-        let beyond = evaluate_at(&coefficients, &places);
-        (0..Q).for_each(|i| assert!((beyond[i] - evaluate(&coefficients, places[i])).abs() < 1e-14));
         for i in 0..Q {
             let slope = apply(&basis.slope_from_nodes, &cube)[i];
             assert!((slope - 3.0 * basis.nodes[i].powi(2)).abs() < 1e-11);
@@ -350,5 +281,34 @@ mod tests {
             }
             assert!((sum - legendre(at * basis.nodes[i])[3]).abs() < 1e-13);
         }
+    }
+
+    /// `s^3`.
+    fn cube() -> Legendre {
+        Legendre::through(&BASIS.nodes.map(|s| s.powi(3)))
+    }
+
+    #[test]
+    fn values_derivatives_and_parts_are_those_of_the_polynomial() {
+        let places = BASIS.nodes.map(|s| 1.2 * s);
+        for (s, beyond) in places.into_iter().zip(cube().at_each(&places)) {
+            assert!((beyond - cube().at(s)).abs() < 1e-14);
+        }
+        for s in [0.0, 0.2, 0.37, 0.9, 1.0] {
+            assert!((cube().at(s) - s.powi(3)).abs() < 1e-14);
+            assert!((cube().derivative().at(s) - 3.0 * s * s).abs() < 1e-13);
+            assert!((cube().restricted(0.3).at(s) - (0.3 * s).powi(3)).abs() < 1e-15);
+        }
+        assert!((cube().mean() - 0.25).abs() < 1e-15);
+        assert!(cube().nodal().iter().zip(BASIS.nodes).all(|(value, s)| (value - s.powi(3)).abs() < 1e-14));
+    }
+
+    #[test]
+    fn the_maximum_is_found_inside_and_at_either_end() {
+        let (place, value) = Legendre::through(&BASIS.nodes.map(|s| s * (1.4 - s))).maximum();
+        assert!((place - 0.7).abs() < 1e-12 && (value - 0.49).abs() < 1e-15);
+        assert_eq!(cube().maximum().0, 1.0);
+        assert_eq!(Legendre::through(&BASIS.nodes.map(|s| -s)).maximum().0, 0.0);
+        assert_eq!(Legendre([0.0; Q]).maximum(), (0.0, 0.0));
     }
 }

@@ -6,5 +6,6 @@ pub(crate) mod forcing;
 pub(crate) mod legendre;
 pub(crate) mod oscillator;
 pub(crate) mod peak;
+mod polynomial;
 pub(crate) mod rows;
 pub(crate) mod vector;

@@ -50,7 +50,7 @@ use super::load_change::LoadChange;
 use super::no_derivative::NoDerivative;
 use super::problem::Posed;
 use super::system::System;
-use crate::panel::legendre::{BASIS, Nodal, Q, add, derivative, evaluate};
+use crate::panel::legendre::{Legendre, Q, add};
 use contact_models::Force;
 pub(crate) use expansion::Expansions;
 use panel::{Moved, Passage, Solved};
@@ -255,17 +255,17 @@ impl Walk<'_> {
                     add(&mut moved.overlap[p], longer, &slide.overlap[p]);
                 }
                 let interval = self.contacts[own.contact].interval;
-                let force = BASIS.coefficients(&moved.force[p]);
-                let overlap = BASIS.coefficients(&moved.overlap[p]);
+                let force = Legendre::through(&moved.force[p]);
+                let overlap = Legendre::through(&moved.overlap[p]);
                 let Some(interval) = self.tangents[d].intervals.get_mut(interval) else { continue };
-                interval.impulse_n_s += h * force[0] + longer * evaluate(&own.force, 1.0);
+                interval.impulse_n_s += h * force.mean() + longer * own.force.at(1.0);
                 let end = |place: f64, slope: f64| if place == 1.0 { longer * slope } else { 0.0 };
                 let [by_force, by_compression] = &peaks[p];
                 if let Some((place, slope)) = by_force {
-                    interval.peak_force_n = evaluate(&force, *place) + end(*place, slope / h);
+                    interval.peak_force_n = force.at(*place) + end(*place, slope / h);
                 }
                 if let Some((place, slope)) = by_compression {
-                    interval.peak_compression_m = evaluate(&overlap, *place) + end(*place, slope / h);
+                    interval.peak_compression_m = overlap.at(*place) + end(*place, slope / h);
                 }
             }
             let tangent = &mut self.tangents[d];
@@ -287,13 +287,13 @@ impl Walk<'_> {
     /// Where on this panel force and compression of each contact exceed all before, with their slope there.
     fn peaks(&mut self, solved: &[Solved]) -> Vec<[Option<(f64, f64)>; 2]> {
         let of = |own: &Solved| {
-            let compression = BASIS.coefficients(&own.compression);
+            let compression = Legendre::through(&own.compression);
             let followed = &mut self.contacts[own.contact];
-            [(&own.force, 0), (&compression, 1)].map(|(coefficients, which)| {
-                let (place, value) = highest(coefficients);
+            [(&own.force, 0), (&compression, 1)].map(|(polynomial, which)| {
+                let (place, value) = polynomial.maximum();
                 (value > followed.peaks[which]).then(|| {
                     followed.peaks[which] = value;
-                    (place, evaluate(&derivative(coefficients), place))
+                    (place, polynomial.derivative().at(place))
                 })
             })
         };
@@ -327,22 +327,4 @@ fn ending(next: &Stretch) -> Ending {
         Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,
         Some((c, event)) => Ending::Event(*c, *event),
     }
-}
-
-/// Place and value of the maximum of a polynomial on [0, 1].
-fn highest(coefficients: &Nodal) -> (f64, f64) {
-    const GRID: u32 = 16;
-    let value = |place: f64| evaluate(coefficients, place);
-    let grid = (0..=GRID).map(|i| f64::from(i) / f64::from(GRID));
-    let (mut place, mut best) = grid.map(|s| (s, value(s))).fold((0.0, f64::MIN), |a, b| if b.1 > a.1 { b } else { a });
-    let slope = derivative(coefficients);
-    let bend = derivative(&slope);
-    for _ in 0..8 {
-        let next = place - evaluate(&slope, place) / evaluate(&bend, place);
-        if !((0.0..=1.0).contains(&next) && value(next) >= best) {
-            break;
-        }
-        (place, best) = (next, value(next));
-    }
-    (place, best)
 }

@@ -6,7 +6,7 @@ use crate::assembly::dense::Stretch;
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
-use crate::panel::legendre::{BASIS, Nodal, Q, add, apply, derivative, dot, evaluate, slopes};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, add, apply, dot, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
@@ -19,8 +19,8 @@ const LEAST_LAW_STEP: f64 = 1e-9;
 pub(super) struct Solved {
     pub contact: usize,
     pub branch: Branch,
-    /// Force by coefficients; at the nodes the force, `F'`, `t F` and `t F'`.
-    pub force: Nodal,
+    /// Force as a polynomial; at the nodes the force, `F'`, `t F` and `t F'`.
+    pub force: Legendre,
     pub nodal: Nodal,
     pub force_rate: Nodal,
     pub timed: Nodal,
@@ -74,25 +74,24 @@ impl Walk<'_> {
     pub fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
         let (h, n) = (stretch.length_s, stretch.forces.len());
         let place = BASIS.nodes.map(|s| s * h);
-        let of = |(p, (c, force)): (usize, &(usize, Nodal))| {
+        let of = |(p, (c, force)): (usize, &(usize, Legendre))| {
             let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
             let branch = stretch.contacts[*c].branch?;
             let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
             let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
             compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
             for (q, (_, other)) in stretch.forces.iter().enumerate() {
-                let nodal = BASIS.nodes.map(|s| evaluate(other, s));
+                let nodal = other.nodal();
                 add(&mut compression, 1.0, &apply(&expansion.own[p * n + q], &nodal));
             }
             let rate = slopes(followed.overlap, &compression, h);
             let law = self.posed.laws[*c];
-            let nodal = BASIS.nodes.map(|s| evaluate(force, s));
-            let slope = derivative(force);
-            let force_rate = BASIS.nodes.map(|s| evaluate(&slope, s) / h);
+            let nodal = force.nodal();
+            let force_rate = force.derivative().nodal().map(|slope| slope / h);
             let (timed, timed_rate) = (times(&place, &nodal), times(&place, &force_rate));
             let driven = |nodal: &Nodal| {
                 let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; self.system.modes.len()]);
-                let force = BASIS.coefficients(nodal);
+                let force = Legendre::through(nodal);
                 expansion.forced.push(&self.units[*c], &force, &mut amplitude, &mut rate);
                 [amplitude, rate]
             };
@@ -123,7 +122,7 @@ impl Walk<'_> {
             (0..system.modes.len()).map(|k| -system.drag[k] * b[k] - system.square[k] * a[k]).collect();
         self.loads.rigid.iter().for_each(|&k| bend[k] += self.loads.line(k, time_s).0);
         for solved in solved {
-            let force = evaluate(&solved.force, place);
+            let force = solved.force.at(place);
             for span in &system.links[solved.contact].spans {
                 span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
             }
@@ -209,7 +208,7 @@ impl Walk<'_> {
         for (own, force) in solved.iter().zip(&force) {
             let c = own.contact;
             let link = &system.links[c];
-            expansion.forced.push(&link.spans, &BASIS.coefficients(force), &mut amplitude, &mut rate);
+            expansion.forced.push(&link.spans, &Legendre::through(force), &mut amplitude, &mut rate);
             for (Span { modes, psi }, Span { psi: by, .. }) in link.spans.iter().zip(&change.psi[c]) {
                 for (order, moved) in [&mut amplitude, &mut rate].into_iter().enumerate() {
                     let driven = own.driven.each_ref().map(|motion| motion[order].get(modes.clone()).unwrap_or(&[]));
@@ -249,8 +248,8 @@ impl Walk<'_> {
             let [mut by_mode, mut by_mode_rate] = mode.free.map(|[by_a, by_b]| by_a * a[k] + by_b * b[k]);
             for own in solved.iter() {
                 let psi = system.links[own.contact].weight(k);
-                by_mode -= psi * dot(&mode.end.0, &own.force);
-                by_mode_rate -= psi * dot(&mode.end.1, &own.force);
+                by_mode -= psi * dot(&mode.end.0, &own.force.0);
+                by_mode_rate -= psi * dot(&mode.end.1, &own.force.0);
             }
             amplitude[k] += by_zeta * by_mode;
             rate[k] += by_zeta * by_mode_rate;
@@ -337,7 +336,7 @@ impl Walk<'_> {
                 add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q], force));
             }
             let spans = &self.system.links[solved[p].contact].spans;
-            expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
+            expansion.forced.push(spans, &Legendre::through(&force[p]), &mut amplitude, &mut rate);
         }
         for k in 0..amplitude.len() {
             amplitude[k] += to[1][k];
@@ -395,5 +394,5 @@ fn swept<const N: usize>(
 /// Rate at the start of a polynomial by its values at the start and at the nodes.
 fn slope_at_start(start: f64, nodal: &Nodal, h: f64) -> f64 {
     let rates = slopes(start, nodal, h);
-    evaluate(&BASIS.coefficients(&rates), 0.0)
+    Legendre::through(&rates).at(0.0)
 }
