@@ -20,7 +20,7 @@ pub fn run(root: &Path, seconds: u32) -> Result<(), Failure> {
     if !fuzzer().arg("--version").output().is_ok_and(|output| output.status.success()) {
         return Err(
             "the fuzzer needs `rustup toolchain install nightly` and `cargo install cargo-fuzz`; without them \
-                    `cargo test -p vibroimpact --test fuzz_corpus` replays the corpus"
+                    `cargo test -p vibroimpact --test tests fuzz_corpus::` replays the corpus"
                 .into(),
         );
     }

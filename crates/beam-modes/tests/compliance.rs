@@ -1,8 +1,7 @@
 //! Static compliance compared with closed forms and modal sums.
 
-mod common;
+use crate::common::{ENDS, segment};
 use beam_modes::{Beam, End, Rod, RodEnd, RodSegment};
-use common::{ENDS, segment};
 
 #[test]
 fn closed_forms() {

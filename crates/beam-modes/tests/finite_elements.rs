@@ -1,8 +1,7 @@
 //! The finite-element model converges to the exact modes with order 4.
 
-mod common;
+use crate::common::{ENDS, segment};
 use beam_modes::{Beam, End, fem};
-use common::{ENDS, segment};
 
 fn stepped(ends: [End; 2]) -> Beam {
     Beam { segments: vec![segment(0.5, 1.0, 1.0), segment(0.5, 0.3, 0.5)], ends }

@@ -1,8 +1,7 @@
 //! Attachments, supports, axial force and foundation: closed forms, multiple precision, limits, metamorphic checks.
 
-mod common;
+use crate::common::{ENDS, rows, segment};
 use beam_modes::{Attachment, Beam, BeamSystem, End, InvalidInput, Modes, Segment, ShearSection, Support};
-use common::{ENDS, rows, segment};
 use std::f64::consts::PI;
 
 fn bare(segments: &[Segment], ends: [End; 2]) -> BeamSystem {

@@ -1,9 +1,7 @@
 //! Cases that are difficult for codes of the modes of beams, each with its expected result.
 
-mod common;
-
+use crate::common::{ENDS, defect, segment, thick};
 use beam_modes::{Beam, End, Segment};
-use common::{ENDS, defect, segment, thick};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

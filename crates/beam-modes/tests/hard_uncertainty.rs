@@ -1,10 +1,8 @@
 //! Statements about modes over random stepped beams: frequencies do not depend on the way in which they are found, and shapes
 //! are orthonormal. The seed is fixed.
 
-mod common;
-
+use crate::common::{ENDS, defect, segment};
 use beam_modes::{Beam, End, Segment, fem};
-use common::{ENDS, defect, segment};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};

@@ -1,8 +1,7 @@
 //! Scaling laws on random stepped beams, and input that must be rejected.
 
-mod common;
+use crate::common::{ENDS, defect, segment};
 use beam_modes::{Beam, End, Rod, RodEnd, RodSegment, Segment, fem};
-use common::{ENDS, defect, segment};
 use proptest::prelude::*;
 
 fn any_beam() -> impl Strategy<Value = Beam> {

@@ -1,8 +1,7 @@
 //! Remainder modes compared with moments summed directly.
 
-mod common;
+use crate::common::{ENDS, segment};
 use beam_modes::{Beam, End, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes};
-use common::{ENDS, segment};
 
 fn moment(modes: &[PointMode], order: i32) -> f64 {
     modes.iter().rev().map(|m| m.shape * m.shape * m.omega_rad_s.powi(-2 * order)).sum()

@@ -1,8 +1,7 @@
 //! Axial modes.
 
-mod common;
+use crate::common::orthonormality_defect;
 use beam_modes::{Rod, RodEnd, RodSegment};
-use common::orthonormality_defect;
 use std::f64::consts::PI;
 
 const PAIRS: [[RodEnd; 2]; 4] = [

@@ -1,8 +1,7 @@
 //! Stepped beams compared with published and multiple-precision values, and extreme cases.
 
-mod common;
+use crate::common::{ENDS, defect, rows, segment, thick};
 use beam_modes::{Beam, End, RectangularSegment, Segment};
-use common::{ENDS, defect, rows, segment, thick};
 use std::f64::consts::TAU;
 
 #[test]

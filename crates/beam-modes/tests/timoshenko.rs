@@ -1,8 +1,7 @@
 //! Timoshenko beams: closed forms, multiple precision, limits, orthonormality, the count in both spectra.
 
-mod common;
+use crate::common::{ENDS, gauss_rule, rows, segment};
 use beam_modes::{Beam, BeamSystem, End, Modes, Segment, ShearSection};
-use common::{ENDS, gauss_rule, rows, segment};
 use std::f64::consts::PI;
 
 fn shear(shear_rigidity_n: f64, rotary_inertia_kg_m: f64) -> ShearSection {

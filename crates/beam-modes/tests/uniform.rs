@@ -1,8 +1,7 @@
 //! Uniform beams compared with textbook results.
 
-mod common;
+use crate::common::{ENDS, defect, segment, thick};
 use beam_modes::{Beam, End};
-use common::{ENDS, defect, segment, thick};
 use std::f64::consts::PI;
 
 fn uniform(ends: [End; 2]) -> Beam {

@@ -1,8 +1,8 @@
 //! The properties of every law on which an integrator relies, along random motions.
 
-mod common;
+use crate::common;
 
-use common::{Motion, laws, motions, walk};
+use crate::common::{Motion, laws, motions, walk};
 use contact_models::{ContactLaw, Law, Memory, check_contract, check_contract_along, trace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

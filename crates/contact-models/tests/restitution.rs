@@ -1,9 +1,7 @@
 //! Restitution at a wall: closed relations compared with step-by-step integration, and the restitutions of the published
 //! calibrations.
 
-mod common;
-
-use common::{BALL_MASS_KG, K_H, rebound};
+use crate::common::{BALL_MASS_KG, K_H, rebound};
 use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
 use contact_models::{Law, LinearSpring, Power, Thornton, Viscous};
 

@@ -1,8 +1,6 @@
 //! Laws for a required restitution, compared with step-by-step integration, and their restitutions with a fixed step.
 
-mod common;
-
-use common::rebound;
+use crate::common::rebound;
 use contact_models::{Flores, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Law, Wanted};
 use contact_models::{damping_ratio, damping_ratio_if_it_pulled, reduced_mass_kg, stepped_restitution};
 

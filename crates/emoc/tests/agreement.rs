@@ -1,10 +1,8 @@
 //! The forms of the model agree: closed form, P_1, its reduced form, and P_0 with its 2^N inequalities.
 #![cfg(feature = "qp")]
 
-mod common;
-
-use common::Random;
-use common::enumeration::minimise;
+use crate::common::Random;
+use crate::common::enumeration::minimise;
 use emoc::{Branch, Coefficients, SingleImpact};
 
 fn moderated_mass_ratio(impact: &SingleImpact) -> f64 {

@@ -1,9 +1,7 @@
 //! Lemke's method compared with the definition, and the baseline compared with known impacts.
 #![cfg(feature = "alloc")]
 
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use emoc::lcp::{Lcp, newton_impact, solve};
 use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, newton_restitution};
 

@@ -1,8 +1,6 @@
 //! Analytic derivatives compared with differences, the ranges of the restitution, and single precision.
 
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use emoc::{Branch, Coefficients, Impact, Parameters, Site, newton_restitution};
 
 /// Central difference of fourth order.

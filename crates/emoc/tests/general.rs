@@ -1,10 +1,8 @@
 //! Several contacts at once: energy never grows and no contact closes, for any parameters.
 #![cfg(feature = "qp")]
 
-mod common;
-
-use common::Random;
-use common::enumeration::minimise;
+use crate::common::Random;
+use crate::common::enumeration::minimise;
 use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, Solution, SolveError, Solver};
 
 const ELASTIC: Coefficients<f64> = Coefficients { ebar: 1.0, beta0: 0.0, beta1: 0.0 };

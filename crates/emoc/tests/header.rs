@@ -1,8 +1,6 @@
 //! The C header compared with the crate, if there is a C compiler.
 
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use emoc::{Impact, MovingImpact, MovingRebound, Parameters, Site};
 use std::fmt::Write as _;
 use std::io::Write as _;

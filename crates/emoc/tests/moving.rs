@@ -2,9 +2,7 @@
 //! closed form for a structure at rest.
 #![cfg(feature = "qp")]
 
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use emoc::{Coefficients, Contact, Friction, Mode, MovingImpact, Outcome, Problem, Solver};
 
 fn problem(impact: &MovingImpact) -> Problem {

@@ -1,7 +1,5 @@
 //! Derivatives of runs of assemblies compared with differences of runs at a tolerance of 1e-13.
 
-mod common;
-
 use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Derivative, Derivatives, Differentiated, Force, Interval, Load, NoDerivative,

@@ -1,10 +1,8 @@
 //! Difficult cases of many bodies and contacts: equivalent descriptions give the same result, and the energy of many modes is
 //! balanced.
 
-mod common;
-
+use crate::common::Intervals;
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
-use common::Intervals;
 use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,

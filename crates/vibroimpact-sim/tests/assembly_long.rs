@@ -1,7 +1,5 @@
 //! Assemblies over long times: rest, reliability, and limiting cases.
 
-mod common;
-
 use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring, Viscous};
 use vibroimpact_sim::assembly::{

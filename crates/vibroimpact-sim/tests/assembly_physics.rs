@@ -1,9 +1,7 @@
 //! Assemblies compared with closed forms and with an independent integration of the same equations.
 
-mod common;
-
+use crate::common::{Intervals, dormand_prince};
 use beam_modes::{Beam, End, RectangularSegment, Segment};
-use common::{Intervals, dormand_prince};
 use contact_models::{ContactLaw, Hertz, Law, LinearSpring, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{

@@ -1,8 +1,6 @@
 //! Cases that are difficult for codes of impacts on infinite beams and plates, each with its expected result.
 
-mod common;
-
-use common::random::{config, decades};
+use crate::common::random::{config, decades};
 use proptest::prelude::*;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{

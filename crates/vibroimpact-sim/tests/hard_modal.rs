@@ -1,11 +1,9 @@
 //! Cases that are difficult for codes of impacts on modal structures, each with its expected result. Bounds on the errors are
 //! at least five times the largest error measured at the tolerance 1e-9, rounded up to a power of ten.
 
-mod common;
-
+use crate::common::random::{any_law, any_structure, config, decades};
+use crate::common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, seen_from, settings};
 use beam_modes::{Beam, End, Segment};
-use common::random::{any_law, any_structure, config, decades};
-use common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, seen_from, settings};
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::StopReason;

@@ -1,10 +1,12 @@
 //! The number of trustworthy digits that a solution states must cover its true error.
 
-mod common;
+use crate::common;
 
+use crate::common::random::{
+    EdgeImpact, cases, decades, edge_impact, ordinary_damping, ordinary_impact, ordinary_striker,
+};
+use crate::common::{hertz, pinned, pinned_with_remainder, runge_kutta, seen_from, settings};
 use beam_modes::{Beam, End, Segment};
-use common::random::{EdgeImpact, cases, decades, edge_impact, ordinary_damping, ordinary_impact, ordinary_striker};
-use common::{hertz, pinned, pinned_with_remainder, runge_kutta, seen_from, settings};
 use contact_models::{KelvinVoigt, Law, LinearSpring, Viscous};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;

@@ -1,6 +1,6 @@
 //! Laws other than Hertz's, and user-defined impulse responses, on structures without ends, compared with independent methods.
 
-mod common;
+use crate::common;
 
 use contact_models::{
     After, Boundary, Branch, ContactLaw, Felt, Force, Hertz, HuntCrossley, Hysteretic, Internal, KelvinVoigt, Law,

@@ -3,14 +3,12 @@
 //!
 //! Two descriptions of one impact must agree within the uncertainties that both solutions state.
 
-mod common;
-
-use beam_modes::{Beam, End, Segment};
-use common::random::{
+use crate::common::random::{
     Impact, config, conservative_law, decades, ordinary_damping, ordinary_impact, ordinary_law, ordinary_striker,
     ordinary_structure,
 };
-use common::{seen_from, settings};
+use crate::common::{seen_from, settings};
+use beam_modes::{Beam, End, Segment};
 use contact_models::{Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;

@@ -1,8 +1,6 @@
 //! The modal impact compared with an independent method, with itself, and with the published benchmark.
 
-mod common;
-
-use common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, runge_kutta, second_method, settings, solve};
+use crate::common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, runge_kutta, second_method, settings, solve};
 use contact_models::{
     Felt, Flores, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
     Viscous,

@@ -1,8 +1,6 @@
 //! Properties that hold exactly for any numbers: symmetries, limits, known restitutions, invalid input.
 
-mod common;
-
-use common::{GOLDEN, ball, hertz, pinned, settings, solve};
+use crate::common::{GOLDEN, ball, hertz, pinned, settings, solve};
 use contact_models::{Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solver, Start, Striker, Structure};

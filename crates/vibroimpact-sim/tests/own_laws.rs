@@ -1,8 +1,6 @@
 //! User-defined laws: those that keep their contract work like any other, and one that breaks it ends the run with that reason.
 
-mod common;
-
-use common::{ball, pinned, second_method, settings};
+use crate::common::{ball, pinned, second_method, settings};
 use contact_models::{
     After, Boundary, Branch, ContactLaw, Force, Hertz, Internal, Memory, Stage, boundaries, check_contract,
 };

@@ -1,10 +1,9 @@
 //! The law of the example `own_law`, with two internal variables, compared with an integration of its flow rule.
 
-mod common;
 #[path = "../examples/own_law/hardening.rs"]
 mod hardening;
 
-use common::{Intervals, ball, dormand_prince_until, pinned, settings};
+use crate::common::{Intervals, ball, dormand_prince_until, pinned, settings};
 use contact_models::{TracePoint, check_contract, trace};
 use hardening::Hardening;
 use std::f64::consts::PI;

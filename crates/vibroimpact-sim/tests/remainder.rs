@@ -1,8 +1,7 @@
 //! The effect of remainder modes: the restitution of the thesis's beam with few modes compared with the converged one.
 
-mod common;
+use crate::common::{GOLDEN, pinned, settings, solve};
 use beam_modes::{Beam, BeamSystem, End, PointMode, RectangularSegment, Segment, ShearSection, remainder_modes};
-use common::{GOLDEN, pinned, settings, solve};
 use contact_models::{Body, Hertz, Law};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Solution, Solver, Striker, Structure};

@@ -1,10 +1,10 @@
 //! Structures that move against an immovable stop: whether they meet it, separate from it for good, or stay pressed against it.
 
-mod common;
+use crate::common;
 
+use crate::common::random::{cases, decades};
+use crate::common::settings;
 use beam_modes::{Beam, End, Segment};
-use common::random::{cases, decades};
-use common::settings;
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;

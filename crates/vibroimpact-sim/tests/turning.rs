@@ -1,9 +1,7 @@
 //! A solver that is moved from location to location of a structure, or shared by threads, gives the results of a new one, to
 //! the last bit.
 
-mod common;
-
-use common::{ball, hertz, pinned, settings};
+use crate::common::{ball, hertz, pinned, settings};
 use vibroimpact_sim::modal::{Settings, Solver, Start, Striker, Structure};
 
 #[test]

@@ -1,12 +1,9 @@
 //! The program with scenes of bodies: text, JSON, files, exit codes.
 
-mod gallery;
-mod program;
-
 use std::fs;
 
-use gallery::datasets;
-use program::{run, stdout};
+use crate::gallery::datasets;
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use vibroimpact::assembly::{AssemblyScene, Wanted};

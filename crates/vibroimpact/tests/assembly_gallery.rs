@@ -1,11 +1,9 @@
 //! The gallery of scenes of bodies: the results in a table, and the pictures.
 
-mod gallery;
-
 use std::fmt::Write;
 use std::fs;
 
-use gallery::{assemblies, assert_checked_in, datasets, with_history};
+use crate::gallery::{assemblies, assert_checked_in, datasets, with_history};
 use vibroimpact::assembly::{Summary, headline, picture};
 use vibroimpact::plot::Format;
 use vibroimpact::text::quantity;

@@ -1,11 +1,9 @@
 //! Scenes of bodies compared with published values, closed forms and second methods.
 
-mod gallery;
-
 use std::f64::consts::{PI, TAU};
 
+use crate::gallery::{assemblies, assembly, with_history};
 use beam_modes::fem;
-use gallery::{assemblies, assembly, with_history};
 use serde_json::json;
 use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion};
 use vibroimpact::scene::{Attachment, BeamTheory, Structure};

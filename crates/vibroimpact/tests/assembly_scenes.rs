@@ -1,12 +1,10 @@
 //! Scenes of bodies: a scene that is written is read back unchanged, the solver's problem agrees with the definitions, and
 //! every field that cannot be used is rejected with its path.
 
-mod gallery;
-
 use std::f64::consts::TAU;
 use std::fs;
 
-use gallery::assemblies;
+use crate::gallery::assemblies;
 use serde_json::{Value, json};
 use vibroimpact::assembly::{AnyScene, AssemblyScene};
 use vibroimpact::vibroimpact_sim::assembly::{Force, Point};

@@ -1,11 +1,9 @@
 //! Invalid input as a user meets it: exit code 2, a message that states what would be allowed, and nothing written.
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::Value;
 use tempfile::TempDir;
 

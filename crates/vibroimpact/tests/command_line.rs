@@ -1,10 +1,8 @@
 //! The program as a user meets it: files in, text, JSON, files and exit codes out.
 
-mod program;
-
 use std::fs;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 
 /// The scene of the documentation; 40 damped modes of a stepped cantilever.

@@ -1,12 +1,10 @@
 //! The keys and columns that the commands write, compared with the page that documents them.
 
-mod program;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");

@@ -1,14 +1,12 @@
 //! The first steps of a new user: `demo`, `init`, fields set on the command line, scenes from the standard input, materials by
 //! name, manual pages, and the amount of output.
 
-mod program;
-
 use std::fs;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::Value;
 use vibroimpact::Scene;
 use vibroimpact::scene::{MATERIALS, schema};

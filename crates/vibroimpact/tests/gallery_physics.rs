@@ -1,11 +1,11 @@
 //! The scenes of the gallery agree with physics, and the table of the gallery contains their results.
 
-mod gallery;
+use crate::gallery;
 
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use gallery::{assert_checked_in, gallery, named, restitution};
+use crate::gallery::{assert_checked_in, gallery, named, restitution};
 use vibroimpact::beam_modes;
 use vibroimpact::model::Modes;
 use vibroimpact::scene::{Beam, BeamTheory, End, Segment, Structure};

@@ -1,11 +1,9 @@
 //! `vibroimpact identify`: parameters from synthetic measurements whose true values are known.
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
 

@@ -1,11 +1,9 @@
 //! The command `infinite-beam`, and scenes with infinite structures, as a user meets them.
 
-mod program;
-
 use std::fs;
 use std::path::PathBuf;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
 

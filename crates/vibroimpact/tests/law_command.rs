@@ -1,8 +1,6 @@
 //! The command `law`, as a user meets it.
 
-mod program;
-
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::Value;
 use vibroimpact::contact_models::{HuntCrossley, LankaraniNikravesh, Law};
 

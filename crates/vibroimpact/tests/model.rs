@@ -168,7 +168,7 @@ fn stated_modes_are_used_unchanged() {
     assert_eq!(answer.residual_compliance_m_n, 0.0);
     // 0.17739 at N = 40 with plain truncation, where the limit of many modes is 0.1425.
     assert!((answer.restitution.unwrap() - 0.17739).abs() < 1e-3, "{answer:?}");
-    let chosen = crate::answer(&chapter3());
+    let chosen = self::answer(&chapter3());
     assert!((chosen.restitution.unwrap() - 0.1425).abs() < 2e-3, "{chosen:?}");
 }
 

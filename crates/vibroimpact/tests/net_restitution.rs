@@ -1,11 +1,9 @@
 //! `vibroimpact emoc` and `vibroimpact fit` as a user meets them.
 
-mod program;
-
 use std::f64::consts::PI;
 use std::fs;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 
 /// A pinned beam of 1 kg, whose shapes are sqrt(2) sin(k pi x) exactly.

@@ -1,12 +1,9 @@
 //! Periodic motions of scenes: text, JSON, branches, errors.
 
-mod gallery;
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::Value;
 
 /// A lightly damped oscillator below its resonance, with a stop that it may or may not reach.
@@ -132,7 +129,7 @@ fn a_field_on_which_the_motion_does_not_depend_is_refused() {
 #[test]
 fn doubled_branches_are_followed_drawn_and_written() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = gallery::datasets("assemblies/shaken-table.json").display().to_string();
+    let scene = crate::gallery::datasets("assemblies/shaken-table.json").display().to_string();
     let words = ["orbit", &scene, "--over", "ground_motion.displacement_m", "--to", "0.0011", "--json"];
     let more = ["--doublings", "2", "--csv", "b.csv", "--plot", "b.svg"];
     let arguments: Vec<&str> = words.into_iter().chain(more).collect();

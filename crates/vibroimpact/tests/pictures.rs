@@ -1,11 +1,9 @@
 //! Pictures and reports as the program writes them.
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes");
 

@@ -1,12 +1,10 @@
 //! The object that `simulate --json` prints: one form for every model and structure, documented key by key.
 
-mod program;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");

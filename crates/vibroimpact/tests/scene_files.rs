@@ -1,10 +1,8 @@
 //! Scenes as files: JSON and TOML, versions, the schema, tables of modes, named points, motion before the impact.
 
-mod gallery;
-
 use std::fs;
 
-use gallery::{assemblies, assembly, assert_checked_in, datasets, gallery, named, paths};
+use crate::gallery::{assemblies, assembly, assert_checked_in, datasets, gallery, named, paths};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use serde_json::{Value, json};

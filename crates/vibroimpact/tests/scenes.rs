@@ -1,8 +1,6 @@
 //! Scene files: the gallery runs, a scene that is written is read back unchanged, and no input causes a panic.
 
-mod gallery;
-
-use gallery::{gallery, named, restitution};
+use crate::gallery::{gallery, named, restitution};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use vibroimpact::assembly::{AnyScene, AxialEnd};

@@ -1,11 +1,9 @@
 //! Derivatives with respect to the numbers of scenes, compared with differences of solutions of changed scenes.
 
-mod program;
-
 use std::fs;
 use std::path::PathBuf;
 
-use program::{run, stdout};
+use crate::program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
 use vibroimpact::assembly::{AssemblyScene, Summary};

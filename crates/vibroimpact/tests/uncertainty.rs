@@ -1,12 +1,12 @@
 //! The uncertainty that a result states covers its error: near supports, at the end of a list of modes, for truncated models.
 
-mod gallery;
+use crate::gallery;
 
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use gallery::named;
+use crate::gallery::named;
 use serde_json::{Value, json};
 use vibroimpact::Scene;
 use vibroimpact::model::{Answer, Kept, Model, Modes};

@@ -8,6 +8,8 @@ use std::time::Instant;
 #[cfg(test)]
 mod circles;
 #[cfg(test)]
+mod test_files;
+#[cfg(test)]
 mod workflows;
 
 type Failure = Box<dyn Error>;

@@ -1,5 +1,4 @@
 //! Beams and an independent quadrature for the tests.
-#![allow(dead_code)]
 
 use beam_modes::{Beam, End, Modes, Segment};
 

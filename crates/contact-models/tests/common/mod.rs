@@ -1,7 +1,5 @@
 //! A plain striker at a wall, integrated step by step through the contract of a law.
 
-#![allow(dead_code)] // each test binary uses only a part
-
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
 use contact_models::{Law, LinearSpring, Power, Thornton, Viscous};
@@ -121,7 +119,6 @@ pub fn laws() -> impl Strategy<Value = Law> {
 pub struct Visit {
     pub branch: Branch,
     pub compression_m: f64,
-    pub rate_m_s: f64,
 }
 
 /// A change of branch, or a release.
@@ -176,7 +173,7 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
             walk.crossings.push(Crossing { branch_before: before, compression_m: land.0, rate_m_s: land.1 });
         }
         if let Some(branch) = contact {
-            walk.states.push(Visit { branch, compression_m: to.0, rate_m_s: to.1 });
+            walk.states.push(Visit { branch, compression_m: to.0 });
         }
     }
     walk

@@ -1,7 +1,6 @@
 //! A convex quadratic program by brute force: every set of active rows, accepted by the optimality conditions.
 
 /// Minimises `sum h_i x_i^2 / 2` subject to `row . x >= bound`.
-#[allow(dead_code)]
 pub fn minimise(h: &[f64], rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
     let mut chosen = Vec::new();
     choose(h, rows, 0, &mut chosen)

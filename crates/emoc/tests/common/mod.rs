@@ -22,7 +22,6 @@ impl Random {
     }
 
     /// Uniform in the logarithm.
-    #[allow(dead_code)]
     pub fn log_range(&mut self, low: f64, high: f64) -> f64 {
         self.range(low.ln(), high.ln()).exp()
     }
@@ -32,7 +31,6 @@ impl Random {
     }
 
     /// Coefficients anywhere in their ranges, the ends included one time in five.
-    #[allow(dead_code)]
     pub fn coefficients(&mut self) -> Coefficients<f64> {
         let end = |random: &mut Random| match random.below(10) {
             0 => 0.0,

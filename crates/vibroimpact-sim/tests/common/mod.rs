@@ -1,5 +1,5 @@
 //! Common parts of the tests of the modal impact: the thesis's beam, and a plain Runge-Kutta integration.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "examples use a part of it")]
 
 pub mod random;
 

@@ -1,7 +1,5 @@
 //! The gallery of scenes, and files that are generated and checked in.
 
-#![allow(dead_code, reason = "each test file uses its part")]
-
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

@@ -1,12 +1,10 @@
 //! Derivatives of impacts compared with differences of solutions in 32 digits, and of solutions at a tolerance of 1e-13.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod double;
 mod taylor;
 
-use common::random::{cases, config, decades, ordinary_law, ordinary_striker, ordinary_structure};
-use common::{ball, hertz, pinned, pinned_with_remainder, settings};
+use crate::common::random::{cases, config, decades, ordinary_law, ordinary_striker, ordinary_structure};
+use crate::common::{ball, hertz, pinned, pinned_with_remainder, settings};
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, KelvinVoigt, Law, Memory};
 use double::Double;
 use proptest::prelude::*;
