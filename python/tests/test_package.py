@@ -169,7 +169,7 @@ def test_a_sweep_does_not_depend_on_threads(scene):
 
 
 HEAVY = {
-    "simulate": lambda scene: vibroimpact.simulate(scene | {"modes": 150}),
+    "simulate": lambda scene: vibroimpact.simulate(scene | {"modes": 1000}),
     "modes": lambda scene: vibroimpact.modes(SCENES / "stepped-shaft.toml", 9000),
     "turning_points": lambda scene: vibroimpact.turning_points(30),
     "emoc": lambda scene: vibroimpact.emoc(SCENES / "stepped-shaft.toml", modes=9000),
