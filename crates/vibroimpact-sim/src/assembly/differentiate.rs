@@ -6,7 +6,7 @@ use super::no_derivative::NoDerivative;
 use super::problem::{Assembly, Point, Posed, Settings};
 use super::responses::Responses;
 use super::solution::{Interval, Observer, Outcome, Run};
-use super::solve::{Solver, follow};
+use super::solve::{Keep, Solver, follow};
 use super::stencil::Stencil;
 use super::system::System;
 use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -249,7 +249,7 @@ impl Solver<'_> {
     ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
-        let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), true);
+        let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), Keep::Motion);
         if run.outcome != Outcome::End {
             return Ok((run.outcome, Err(NoDerivative::Outcome)));
         }
@@ -314,7 +314,8 @@ impl Solver<'_> {
     ) -> Differences {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
-        let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, true);
+        let (run, record) =
+            follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, Keep::NearestMiss);
         let zeros = vec![0.0; changes.len()];
         let fixed = match run.outcome {
             Outcome::Parted => None,

@@ -55,8 +55,8 @@ pub(crate) struct March<'a> {
     /// All stretches of the motion, if they are requested, and the events since the last one.
     pub(super) record: Option<Vec<Stretch>>,
     pub(super) pending: Vec<(usize, Event)>,
-    /// Near misses, along a recorded motion.
-    pub(super) misses: Misses,
+    /// The search for near misses along a recorded motion, if it is requested.
+    pub(super) misses: Option<Misses>,
     /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Memory for the enclosures, and for Newton's method.
@@ -127,7 +127,7 @@ impl<'a> March<'a> {
             account: None,
             record: None,
             pending: Vec::new(),
-            misses: Misses::default(),
+            misses: None,
             departure: (0.0, Vec::new(), Vec::new()),
             held: Held::default(),
             newton: Newton::default(),

@@ -38,15 +38,14 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether a contact has nearly closed or opened on the last panel.
+    /// Whether a contact has nearly closed or opened on the last panel, if this is requested.
     pub(super) fn look_for_misses(&mut self) {
-        let Some(record) = &self.record else { return };
-        let mut misses = std::mem::take(&mut self.misses);
+        let (Some(record), Some(mut misses)) = (&self.record, self.misses.take()) else { return };
         let distances = (0..self.states.len()).map(|c| self.distance(c));
         let (system, loads, laws) = (self.system, &self.loads, self.laws);
         let panel = record.last().map(|stretch| Panel { system, loads, laws, stretch });
         misses.look(self.time_s, distances, panel.as_ref());
-        self.misses = misses;
+        self.misses = Some(misses);
     }
 
     /// Of an open contact its gap; of a closed one the compression above that at which its branch ends, if that does not depend on
@@ -83,7 +82,7 @@ impl<'a> March<'a> {
 
     /// The record, with the endless flight that follows if the bodies have separated for good or never meet.
     pub(super) fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
-        let mut record = self.record.take().unwrap_or_default();
+        let Some(mut record) = self.record.take() else { return Vec::new() };
         if parted || record.is_empty() {
             let known = record.partition_point(|stretch| stretch.start_s < self.time_s);
             let flight = record.drain(known..).next();

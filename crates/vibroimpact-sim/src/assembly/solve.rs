@@ -1,7 +1,7 @@
 //! Solves an assembly.
 
 use super::dense::{Stretch, in_users_order};
-use super::miss::NearMiss;
+use super::miss::{Misses, NearMiss};
 use super::motion::March;
 use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{Comparison, second_run};
@@ -75,7 +75,14 @@ impl<'a> Solver<'a> {
     /// As [`run`].
     pub fn run(&self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         settings.check()?;
-        Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::default()), settings, observer, false).0)
+        Ok(follow(
+            &self.posed,
+            (&self.system, &self.tables, &mut Responses::default()),
+            settings,
+            observer,
+            Keep::Result,
+        )
+        .0)
     }
 
     /// The time up to which the touches and releases of contacts are certain to the tolerance. Up to this time a second run, with
@@ -102,6 +109,16 @@ impl<'a> Solver<'a> {
     }
 }
 
+/// What is kept of a run beside its result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keep {
+    Result,
+    /// The whole motion.
+    Motion,
+    /// The same, with the nearest miss.
+    NearestMiss,
+}
+
 /// The whole motion of a run.
 #[derive(Default)]
 pub(crate) struct Record {
@@ -110,19 +127,20 @@ pub(crate) struct Record {
     pub nearest_miss: Option<NearMiss>,
 }
 
-/// One run, and its whole motion if it is requested.
+/// One run, and what is to be kept of it.
 pub(crate) fn follow(
     posed: &Posed,
     (system, tables, responses): (&System, &Tables, &mut Responses),
     settings: &Settings,
     observer: &mut dyn Observer,
-    record: bool,
+    keep: Keep,
 ) -> (Run, Record) {
     let mut march = March::new(posed, system, (tables, responses), *settings, observer);
-    march.record = record.then(Vec::new);
+    march.record = (keep != Keep::Result).then(Vec::new);
+    march.misses = (keep == Keep::NearestMiss).then(Misses::default);
     let outcome = march.follow();
     let mut stretches = march.recorded(outcome == Outcome::Parted);
-    if record && stretches.last().is_some_and(|last| last.length_s.is_finite()) {
+    if stretches.last().is_some_and(|last| last.length_s.is_finite()) {
         stretches.push(march.last());
     }
     let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
@@ -133,7 +151,7 @@ pub(crate) fn follow(
     let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
     let (amplitude, rate) = (by_body(&amplitude), by_body(&rate));
     let run = Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts };
-    (run, Record { stretches, nearest_miss: march.misses.nearest })
+    (run, Record { stretches, nearest_miss: march.misses.and_then(|misses| misses.nearest) })
 }
 
 fn contact_end(march: &March, c: usize) -> ContactEnd {

@@ -7,7 +7,7 @@ use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
 use crate::StopReason;
 use crate::assembly::responses::Responses;
-use crate::assembly::solve::follow;
+use crate::assembly::solve::{self, follow};
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
@@ -84,7 +84,9 @@ pub(crate) enum Keep {
     Result,
     /// The whole motion.
     Motion,
-    /// The same, with the energy ledger.
+    /// The same, with the nearest miss.
+    NearestMiss,
+    /// The whole motion, with the energy ledger.
     Record,
 }
 
@@ -329,9 +331,14 @@ impl Solver {
             stop_when_over: true,
             rest_from_s: if keep == Keep::Record { settings.until_s } else { 0.0 },
         };
+        let kept = match keep {
+            Keep::Result => solve::Keep::Result,
+            Keep::Motion | Keep::Record => solve::Keep::Motion,
+            Keep::NearestMiss => solve::Keep::NearestMiss,
+        };
         let mut watch = Watch { intervals: Vec::new(), records: keep == Keep::Record };
         let tables = self.tables[usize::from(posed.bodies.len() == 1)].get_or_init(|| Tables::new(system));
-        let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep != Keep::Result);
+        let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, kept);
         let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
             assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
