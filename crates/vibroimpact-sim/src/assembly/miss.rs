@@ -5,9 +5,11 @@
 //! holds for the compression of a contact above the one at which it opens.
 
 use super::dense::Panel;
+use crate::panel::root::root;
 
-/// Halvings of the time between approach and retreat.
-const HALVINGS: usize = 40;
+/// Accuracy of the time of a miss, as a share of the time between approach and retreat. The distance then changes only with its
+/// square.
+const WITHIN: f64 = 1e-8;
 /// Distance of the two rates whose difference gives the acceleration, as a share of the time between approach and retreat.
 const APART: f64 = 1e-3;
 /// A miss is located if its estimated speed is below that of the nearest so far times this factor.
@@ -92,19 +94,15 @@ impl Misses {
 }
 
 /// The nearest point between a time at which the distance is given and decreases, and one at which it grows.
-fn nearest(panel: &Panel, contact: usize, before: Distance, [mut from, mut to]: [f64; 2]) -> NearMiss {
+fn nearest(panel: &Panel, contact: usize, before: Distance, [from, to]: [f64; 2]) -> NearMiss {
     let sign = if before.is_closed { -1.0 } else { 1.0 };
-    let at = |time_s: f64| {
-        let sample = panel.contact_after(contact, time_s - panel.stretch.start_s);
+    let at = |share: f64| {
+        let sample = panel.contact_after(contact, from + share * (to - from) - panel.stretch.start_s);
         [sign * sample.overlap_m, sign * sample.rate_m_s]
     };
-    let (apart, [start, _]) = (APART * (to - from), at(from));
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (from + to);
-        *(if at(middle)[1] > 0.0 { &mut from } else { &mut to }) = middle;
-    }
-    let distance_m = (before.distance_m + start - at(from)[0]).max(0.0);
-    let bend = (at(from - apart)[1] - at(from + apart)[1]) / (2.0 * apart);
+    let turn = root(0.0, 1.0, WITHIN, |share| at(share)[1]).clamp(0.0, 1.0);
+    let distance_m = (before.distance_m + at(0.0)[0] - at(turn)[0]).max(0.0);
+    let bend = (at(turn - APART)[1] - at(turn + APART)[1]) / (2.0 * APART * (to - from));
     let speed_m_s = (2.0 * bend.max(0.0) * distance_m).sqrt();
-    NearMiss { contact, was_closed: before.is_closed, time_s: from, distance_m, speed_m_s }
+    NearMiss { contact, was_closed: before.is_closed, time_s: from + turn * (to - from), distance_m, speed_m_s }
 }

@@ -17,12 +17,13 @@ use super::collocate::Equations;
 use super::flight::Departure;
 use super::free::{Forcing, Free};
 use super::history::{History, Impulse};
-use super::panel::{Panel, curvature, end_acceleration, hertz, root, turns, variable};
+use super::panel::{Panel, curvature, end_acceleration, hertz, turns, variable};
 use super::piece::Piece;
 use super::problem::{Settings, Structure};
 use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;
 use super::units::{Touch, Units};
+use crate::panel::root::{EXACTLY, root};
 
 /// How the integration of a contact ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -452,7 +453,7 @@ fn separation_ahead(trial: &Trial, low: Option<f64>, found: &[(f64, f64, bool)])
 /// Elapsed fraction of a middle panel at which a compression that is positive at `from` and not
 /// at `to` falls to zero.
 fn zero(x_series: &[f64], from: f64, to: f64) -> f64 {
-    root(from, to, |s| series(x_series, s))
+    root(from, to, EXACTLY, |s| series(x_series, s))
 }
 
 #[cfg(test)]

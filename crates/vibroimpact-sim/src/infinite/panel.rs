@@ -2,6 +2,7 @@
 
 use super::problem::{NODES, Structure};
 use super::rule::{Kind, Tables, dot, series, series_slope};
+use crate::panel::root::{EXACTLY, root};
 
 /// A solved panel, in the scaled units of its contact (see [`super::contact`]).
 #[derive(Debug, Clone)]
@@ -260,33 +261,13 @@ pub(super) fn turns(tables: &Tables, kind: Kind, x_series: &[f64], falling: bool
         // at the mapped end of a panel the slope in the panel variable is zero by nature
         let blind = (kind == Kind::Start && i == 0) || (kind == Kind::End && i + 1 == count);
         if !blind && slope != 0.0 && (slope < 0.0) != falling {
-            let s = root(left, here, |s| series_slope(x_series, s));
+            let s = root(left, here, EXACTLY, |s| series_slope(x_series, s));
             found.push((elapsed(kind, s), series(x_series, s), falling));
             falling = !falling;
         }
         left = here;
     }
     (found, falling)
-}
-
-/// Root of `f` between two places where it has different signs, by secants of which one end is held back
-/// (Illinois).
-pub(super) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut b) = ((a, f(a)), (b, f(b)));
-    for _ in 0..60 {
-        let s = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-        let here = (s, f(s));
-        if !s.is_finite() || (s - b.0).abs() <= 1e-16 || here.1 == 0.0 {
-            return if s.is_finite() { s } else { b.0 };
-        }
-        if (here.1 < 0.0) == (b.1 < 0.0) {
-            a.1 *= 0.5;
-        } else {
-            a = b;
-        }
-        b = here;
-    }
-    b.0
 }
 
 #[cfg(test)]

@@ -7,5 +7,6 @@ pub(crate) mod legendre;
 pub(crate) mod oscillator;
 pub(crate) mod peak;
 mod polynomial;
+pub(crate) mod root;
 pub(crate) mod rows;
 pub(crate) mod vector;

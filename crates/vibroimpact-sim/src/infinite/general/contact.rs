@@ -12,10 +12,11 @@ use super::past::{FreeMotion, Solved};
 use crate::StopReason;
 use crate::infinite::contact::Turn;
 use crate::infinite::history::{History, Impulse};
-use crate::infinite::panel::{root, turns};
+use crate::infinite::panel::turns;
 use crate::infinite::piece::Piece;
 use crate::infinite::problem::Settings;
 use crate::infinite::rule::{Kind, dot, series, series_slope};
+use crate::panel::root::{EXACTLY, root};
 use contact_models::{After, Branch, Memory};
 
 /// Number of changes of branch at one time after which the law counts as inconsistent.
@@ -358,6 +359,6 @@ fn largest(sample: &[f64], f_series: &[f64]) -> f64 {
     let value = |s: f64| series(f_series, s);
     let best = (0..sample.len()).max_by(|&i, &j| value(sample[i]).total_cmp(&value(sample[j]))).unwrap_or(0);
     let turn = (best > 0 && best + 1 < sample.len())
-        .then(|| root(sample[best - 1], sample[best + 1], |s| series_slope(f_series, s)));
+        .then(|| root(sample[best - 1], sample[best + 1], EXACTLY, |s| series_slope(f_series, s)));
     turn.into_iter().filter(|s| (0.0..=1.0).contains(s)).map(value).fold(value(sample[best]), f64::max)
 }

@@ -1,8 +1,9 @@
 //! Event location: where a panel leaves the branch of the law on which it was solved.
 
 use super::law::Margin;
-use crate::infinite::panel::{elapsed, root};
+use crate::infinite::panel::elapsed;
 use crate::infinite::rule::{Kind, Tables, dot, series, series_slope};
+use crate::panel::root::{EXACTLY, root};
 
 /// A boundary that is met within a panel.
 #[derive(Debug, Clone, Copy)]
@@ -58,12 +59,12 @@ fn crossing(tables: &Tables, kind: Kind, polynomial: &[f64], noise: f64) -> Opti
         let low = [(slope(i - 1) < 0.0) != (slope(i) < 0.0)]
             .into_iter()
             .filter(|turns| *turns)
-            .map(|_| root(before, here, |s| series_slope(polynomial, s)))
+            .map(|_| root(before, here, EXACTLY, |s| series_slope(polynomial, s)))
             .find(|s| (before.min(here)..=before.max(here)).contains(s));
         for s in low.into_iter().chain([here]) {
             let value = series(polynomial, s);
             if value < -noise {
-                return Some(above.map_or(start, |above| root(above, s, |s| series(polynomial, s))));
+                return Some(above.map_or(start, |above| root(above, s, EXACTLY, |s| series(polynomial, s))));
             }
             if value > noise {
                 above = Some(s);
