@@ -50,7 +50,7 @@ pub enum Kind {
     HuntCrossley,
     /// The same with the damping set by a restitution, 8 (1 - e) / (5 e v)
     Flores,
-    /// The same with 3 (1 - e^2) / (4 v); from 0.663
+    /// The same with 3 (1 - e^2) / (4 v); for restitutions from 0.663 to 1
     LankaraniNikravesh,
 }
 

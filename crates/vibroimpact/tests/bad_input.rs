@@ -250,6 +250,15 @@ fn nothing_that_exists_is_replaced_without_force() {
     // Remains of an earlier result could be mistaken for a part of this one.
     stdout(&run(folder.path(), &[&simulate[..], &out, &["--force"]].concat()));
     assert!(!folder.path().join("out/contacts.csv").exists() && folder.path().join("out/history.csv").exists());
+    fs::write(folder.path().join("drop.toml"), stdout(&run(folder.path(), &["init", "--kind", "bodies", "-"])))
+        .unwrap();
+    let bodies = stdout(&run(folder.path(), &[&["simulate", "drop.toml", "--force"][..], &out].concat()));
+    let names = ["result.json", "history.csv", "run.svg", "report.html", "intervals.csv", "intervals.parquet"];
+    assert!(bodies.contains(&format!("wrote {} to out\n", names.join(", "))), "{bodies}");
+    assert!(names.iter().all(|name| folder.path().join("out").join(name).exists()));
+    assert!(!folder.path().join("out/impact.svg").exists());
+    stdout(&run(folder.path(), &[&simulate[..], &out, &["--force"]].concat()));
+    assert!(names[2..].iter().all(|name| !folder.path().join("out").join(name).exists()));
 }
 
 #[test]

@@ -47,12 +47,23 @@ fn first_scene(folder: &Path, kind: &str) -> String {
 fn the_demo_needs_no_file_and_writes_none_unasked() {
     let folder = tempfile::tempdir().unwrap();
     let text = stdout(&run(folder.path(), &["demo"]));
-    for part in
-        ["rebound", "restitution", "sub-impacts           5", concat!("vibroimpact ", env!("CARGO_PKG_VERSION"))]
-    {
+    let signature = concat!("\n  the built-in scene, by vibroimpact ", env!("CARGO_PKG_VERSION"), " in ");
+    for part in ["rebound", "restitution", "sub-impacts           5", signature] {
         assert!(text.contains(part), "{part} in\n{text}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    // Hertz's law loses nothing, up to the error of the solution, which rounds to zero.
+    let rubber = [
+        "demo",
+        "--set",
+        "location_m=0.5",
+        "--set",
+        "striker.material=rubber",
+        "--set",
+        "contact.striker_material=rubber",
+    ];
+    let text = stdout(&run(folder.path(), &rubber));
+    assert!(!text.contains("-0.00 %"), "{text}");
 
     let text = stdout(&run(folder.path(), &["demo", "--plot", "demo.svg", "--report", "demo.html"]));
     assert!(text.contains("wrote demo.svg") && text.contains("wrote demo.html"), "{text}");
@@ -102,6 +113,8 @@ fn a_scene_may_come_from_the_standard_input() {
         assert_eq!(stdout(&fed(folder.path(), &with("-"), &toml)), from_file, "{arguments:?}");
         assert_eq!(stdout(&fed(folder.path(), &with("-"), &as_json)), from_file, "{arguments:?}");
     }
+    fs::write(folder.path().join("notes.md"), "# Notes\n").unwrap();
+    assert!(refused(&run(folder.path(), &["simulate", "notes.md"])).contains("(in notes.md)"));
     for (text, part) in [
         ("", "ends too early"),
         ("{", "ends too early"),
@@ -129,6 +142,8 @@ fn fields_are_set_on_the_command_line() {
     let in_file = stdout(&run(folder.path(), &["simulate", "scene.toml", "--json", "--set", "modes=30"]));
     let set = ["demo", "--json", "--set", "striker.speed_m_s=2", "--set", " modes = 30 "];
     assert_eq!(stdout(&run(folder.path(), &set)), in_file);
+    let printed = stdout(&run(folder.path(), &["simulate", "scene.toml", "--set", "modes=30"]));
+    assert!(printed.contains("\n  scene.toml with modes=30, by vibroimpact "), "{printed}");
     // A text, a list, a field of an object that does not exist yet, and an omitted one.
     let set = [
         "demo",
@@ -307,9 +322,20 @@ fn every_command_has_a_manual_page() {
         let page = fs::read_to_string(folder.path().join(format!("man/vibroimpact-{command}.1"))).unwrap();
         assert!(page.contains(&format!(".TH vibroimpact-{command} 1")), "{command}: {page}");
         assert_eq!(stdout(&run(folder.path(), &["manual", command])), page);
+        // commands stay on their lines
+        let example = format!(".SH EXAMPLES\n.nf\n  vibroimpact {}", command.replace('-', "\\-"));
+        assert!(page.contains(&example), "{page}");
     }
-    let program = fs::read_to_string(folder.path().join("man/vibroimpact.1")).unwrap();
-    assert!(program.contains("vibroimpact\\-simulate(1)"), "{program}");
+    // Every page that a page refers to exists.
+    let mut referred = Vec::new();
+    for name in ["vibroimpact", "vibroimpact-infinite-beam"] {
+        let page = fs::read_to_string(folder.path().join(format!("man/{name}.1"))).unwrap().replace('\\', "");
+        referred.extend(page.lines().filter_map(|line| line.strip_suffix("(1)").map(str::to_owned)));
+    }
+    for name in ["vibroimpact-simulate", "vibroimpact-infinite-beam-turning-points"] {
+        assert!(referred.iter().any(|page| page == name), "{name} in {referred:?}");
+    }
+    assert!(referred.iter().all(|name| folder.path().join(format!("man/{name}.1")).exists()), "{referred:?}");
     assert!(refused(&run(folder.path(), &["manual", "--out", "man"])).contains("this file exists"));
     assert!(refused(&run(folder.path(), &["manual", "simulat"])).contains("COMMAND = simulat is not allowed: one of"));
 }

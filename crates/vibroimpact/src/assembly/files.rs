@@ -56,6 +56,9 @@ impl fmt::Debug for IntervalFiles {
 }
 
 impl IntervalFiles {
+    /// The names of the files.
+    pub const NAMES: [&str; 2] = [CSV, PARQUET];
+
     /// Begins the files in a folder, which is made if it is missing; `names` are those of the contacts.
     ///
     /// # Errors
@@ -103,7 +106,7 @@ impl IntervalFiles {
     pub fn close(mut self) -> Result<(), Failure> {
         self.csv.flush().map_err(blame(&self.folder))?;
         self.parquet.close(&self.aside.path().join(PARQUET))?;
-        for name in [CSV, PARQUET] {
+        for name in IntervalFiles::NAMES {
             fs::rename(self.aside.path().join(name), self.folder.join(name)).map_err(blame(&self.folder))?;
         }
         Ok(())

@@ -46,7 +46,7 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     let told = products.write(
         || assembly::picture(&headline, &found),
         |figure| assembly::report(&headline, scene, &summary, figure),
-        || Ok(Files::of(assembly::files(&headline, scene, &found, &summary)?)),
+        || Ok(Files::of(assembly::files(&headline, scene, &found, &summary)?).beside(&IntervalFiles::NAMES)),
     )?;
     Ok(printed + &told)
 }

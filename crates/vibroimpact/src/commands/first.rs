@@ -34,9 +34,9 @@ pub struct DemoArguments {
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
-    extent: simulate::Extent,
-    #[command(flatten)]
     products: Products,
+    #[command(flatten)]
+    extent: simulate::Extent,
 }
 
 /// The scene to write, and its file.
@@ -87,7 +87,7 @@ fn toml_file(name: &str) -> Result<PathBuf, String> {
 pub fn demo(DemoArguments { changes, extent, products }: DemoArguments) -> Result<String, Failure> {
     products.require_room()?;
     extent.require_room(&products)?;
-    let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?)?.any()?;
+    let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?, "the built-in scene")?.any()?;
     let json = products.json;
     let printed = simulate::answer(scene, extent, &products)?;
     Ok(if json { printed } else { printed + NEXT })

@@ -100,8 +100,7 @@ impl Products {
     pub fn require_room(&self) -> Result<(), InvalidInput> {
         if let Some(folder) = &self.out
             && !self.force
-            && let Some(name) =
-                Files::NAMES.into_iter().chain(Files::NAMES_OF_BODIES).find(|name| is_there(&folder.join(name)))
+            && let Some(name) = Files::NAMES.into_iter().find(|name| is_there(&folder.join(name)))
         {
             let allowed = format!("this folder holds {name} already; name another folder, or replace it with --force");
             return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
@@ -156,7 +155,7 @@ impl Products {
         let look = first.map_or_else(String::new, |first| {
             format!("  look at {} first, with a browser\n", printable(&folder.join(first).display().to_string()))
         });
-        Ok(format!("\n  wrote {} to {place}\n{look}", names.join(", ")))
+        Ok(format!("  wrote {} to {place}\n{look}", names.join(", ")))
     }
 }
 
@@ -168,5 +167,5 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
 pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
     let silent = json || is_quiet();
-    Ok(if silent { String::new() } else { format!("\n  wrote {}\n", printable(&path.display().to_string())) })
+    Ok(if silent { String::new() } else { format!("  wrote {}\n", printable(&path.display().to_string())) })
 }

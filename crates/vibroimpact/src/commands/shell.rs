@@ -78,18 +78,18 @@ pub fn completions(
 }
 
 /// The manual page of `program` or of one of its commands, or all of them into a folder.
-pub fn manual(
-    ManualArguments { command, out, force }: ManualArguments,
-    mut program: Command,
-) -> Result<String, Failure> {
+pub fn manual(ManualArguments { command, out, force }: ManualArguments, program: Command) -> Result<String, Failure> {
+    let mut program =
+        program.disable_help_subcommand(true).mut_subcommands(|command| command.disable_help_subcommand(true));
     // names the pages of commands after the program, as in vibroimpact-simulate
     program.build();
     let page = |command: &Command| -> Result<String, Failure> {
         let mut page = Vec::new();
-        clap_mangen::Man::new(command.clone()).render(&mut page)?;
-        Ok(String::from_utf8(page)?)
+        let source = concat!("vibroimpact ", env!("CARGO_PKG_VERSION"));
+        clap_mangen::Man::new(command.clone()).source(source).render(&mut page)?;
+        Ok(with_examples(&String::from_utf8(page)?))
     };
-    let commands = || program.get_subcommands().filter(|command| command.get_name() != "help");
+    let commands = || program.get_subcommands();
     let Some(folder) = out else {
         let Some(name) = command else { return page(&program) };
         let of_name = commands().find(|command| command.get_name() == name);
@@ -99,8 +99,8 @@ pub fn manual(
         })?);
     };
     let mut pages = vec![("vibroimpact.1".to_owned(), page(&program)?)];
-    for command in commands() {
-        pages.push((format!("vibroimpact-{}.1", command.get_name()), page(command)?));
+    for command in commands().flat_map(|command| std::iter::once(command).chain(command.get_subcommands())) {
+        pages.push((format!("{}.1", command.get_display_name().unwrap_or(command.get_name())), page(command)?));
     }
     for (name, _) in &pages {
         require_free("--out", Some(&folder.join(name)), force)?;
@@ -111,6 +111,24 @@ pub fn manual(
     }
     let place = printable(&folder.display().to_string());
     Ok(format!("wrote {} pages to {place}\n  read one with: man -l {place}/vibroimpact-simulate.1\n", pages.len()))
+}
+
+/// A manual page whose last part is called by its content, and in which indented lines, such as commands, stay lines.
+fn with_examples(page: &str) -> String {
+    let Some((options, rest)) = page.split_once(".SH EXTRA\n") else { return page.to_owned() };
+    let rest = rest.strip_prefix("Examples:\n").or_else(|| rest.strip_prefix("Example:\n")).unwrap_or(rest);
+    let mut filled = true;
+    let mut examples = String::new();
+    for line in rest.lines() {
+        // an empty line belongs to the lines around it
+        if !line.is_empty() && filled == line.starts_with("  ") {
+            filled = !filled;
+            examples += if filled { ".fi\n" } else { ".nf\n" };
+        }
+        examples += line;
+        examples.push('\n');
+    }
+    format!("{options}.SH EXAMPLES\n{examples}")
 }
 
 /// The JSON Schema of a kind of file.

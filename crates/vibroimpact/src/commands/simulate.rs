@@ -42,23 +42,23 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
     #[command(flatten)]
-    extent: Extent,
-    #[command(flatten)]
     products: Products,
+    #[command(flatten)]
+    extent: Extent,
 }
 
 /// The extent of the motion that is shown.
 #[derive(Args)]
 pub struct Extent {
-    /// Most intervals of contact that are listed for a scene of bodies, the first ones; files hold all
-    #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
-    intervals: usize,
-    /// End of histories and pictures, from the start; default: a little after the last contact
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
-    until: Option<f64>,
     /// Write an animation of beam and ball in slow motion to this file, .svg
     #[arg(long, value_name = "FILE", value_parser = svg_file)]
     animate: Option<PathBuf>,
+    /// End of histories and pictures, from the start; default: a little after the last contact
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Largest number of intervals of contact that are listed for a scene of bodies; files hold all
+    #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
+    intervals: usize,
 }
 
 impl Extent {

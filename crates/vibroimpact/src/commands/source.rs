@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use vibroimpact::assembly::{AnyScene, AssemblyScene};
 use vibroimpact::draft::Draft;
-use vibroimpact::text::printable;
+use vibroimpact::text::{printable, shorten};
 use vibroimpact::{Scene, SceneError};
 
-use super::voice::note;
+use super::voice::{name_scene, note};
 
 /// The scene of a command.
 #[derive(Args)]
@@ -58,16 +58,19 @@ impl Changes {
         } else {
             Draft::read(path)?
         };
-        note(|| format!("read {}", printable(&path.display().to_string())));
-        self.apply(draft)
+        let name = printable(&path.display().to_string());
+        note(|| format!("read {name}"));
+        self.apply(draft, if name == "-" { "the standard input" } else { &name })
     }
 
-    /// A scene with these fields.
-    pub fn apply(&self, mut draft: Draft) -> Result<Draft, SceneError> {
+    /// A scene with these fields; `name` is its name at the end of the printed result.
+    pub fn apply(&self, mut draft: Draft, name: &str) -> Result<Draft, SceneError> {
         for assignment in &self.set {
             draft.set(assignment)?;
             note(|| format!("set {}", printable(assignment)));
         }
+        let changes = self.set.iter().map(|assignment| shorten(&printable(assignment))).collect::<Vec<_>>().join(", ");
+        name_scene(if changes.is_empty() { name.to_owned() } else { format!("{name} with {changes}") });
         Ok(draft)
     }
 }

@@ -40,9 +40,18 @@ pub fn note(text: impl FnOnce() -> String) {
     }
 }
 
-/// The program and its time so far, for the end of a printed result.
+/// The scene of this run of the program, for the end of a printed result.
+static SCENE: OnceLock<String> = OnceLock::new();
+
+/// Sets the name of the scene, with the fields that the command line changes.
+pub fn name_scene(name: String) {
+    SCENE.get_or_init(|| name);
+}
+
+/// The scene, the program and its time so far, for the end of a printed result.
 pub fn signature() -> String {
-    format!("\n  vibroimpact {}, {}\n", env!("CARGO_PKG_VERSION"), seconds(get().1.elapsed()))
+    let scene = SCENE.get().map_or_else(String::new, |name| format!("{name}, by "));
+    format!("\n  {scene}vibroimpact {} in {}\n", env!("CARGO_PKG_VERSION"), seconds(get().1.elapsed()))
 }
 
 /// A time to read.

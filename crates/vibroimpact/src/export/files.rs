@@ -11,17 +11,28 @@ use crate::plot::Figure;
 use crate::simulate::Resolved;
 use crate::summary::Summary;
 
-/// The files of one impact in memory, so that nothing is written unless all files are complete.
+/// The files of one result in memory, so that nothing is written unless all files are complete.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Files(pub(crate) Vec<(&'static str, Vec<u8>)>);
+pub struct Files {
+    files: Vec<(&'static str, Vec<u8>)>,
+    beside: &'static [&'static str],
+}
 
 impl Files {
-    /// File names of the result of a scene with bodies in addition to [`Files::NAMES`].
-    pub const NAMES_OF_BODIES: [&str; 5] =
-        ["intervals.csv", "intervals.parquet", "run.svg", "report.html", "section.csv"];
-    /// File names of the result of one impact.
-    pub const NAMES: [&str; 6] =
-        ["result.json", "history.csv", "modal_energies.csv", "sub_impacts.csv", "contacts.csv", "impact.svg"];
+    /// File names of the results of all scenes.
+    pub const NAMES: [&str; 11] = [
+        "result.json",
+        "history.csv",
+        "modal_energies.csv",
+        "sub_impacts.csv",
+        "contacts.csv",
+        "impact.svg",
+        "intervals.csv",
+        "intervals.parquet",
+        "run.svg",
+        "report.html",
+        "section.csv",
+    ];
 
     /// `result.json`, `history.csv`, `modal_energies.csv`, `sub_impacts.csv` and `impact.svg`. `result` is the text of
     /// the first, `until_s` the end of the tables.
@@ -29,7 +40,7 @@ impl Files {
     /// # Errors
     /// Errors of the writers, which an impact cannot cause.
     pub fn new(result: String, resolved: &Resolved, until_s: f64, figure: &Figure) -> Result<Files, Failure> {
-        Ok(Files(vec![
+        Ok(Files::of(vec![
             ("result.json", result.into_bytes()),
             ("history.csv", history(&resolved.history, until_s).csv()?),
             ("modal_energies.csv", modal_energies(&resolved.history, until_s).csv()?),
@@ -40,7 +51,13 @@ impl Files {
 
     /// These files, by their names.
     pub fn of(files: Vec<(&'static str, Vec<u8>)>) -> Files {
-        Files(files)
+        Files { files, beside: &[] }
+    }
+
+    /// These files, next to others of the same result that are in the folder already.
+    #[must_use]
+    pub fn beside(self, names: &'static [&'static str]) -> Files {
+        Files { beside: names, ..self }
     }
 
     /// `result.json` and `impact.svg`, for a model that does not resolve the motion in time.
@@ -48,7 +65,7 @@ impl Files {
     /// # Errors
     /// Errors of the writers, which an impact cannot cause.
     pub fn of_net(result: String, figure: &Figure) -> Result<Files, Failure> {
-        Ok(Files(vec![("result.json", result.into_bytes()), ("impact.svg", figure.svg()?.into_bytes())]))
+        Ok(Files::of(vec![("result.json", result.into_bytes()), ("impact.svg", figure.svg()?.into_bytes())]))
     }
 
     /// Writes the files into a folder, which is created if it is missing. Each file appears complete or not at all, and none
@@ -61,10 +78,10 @@ impl Files {
         let blame = |error: std::io::Error| format!("cannot write to {}: {error}", folder.display());
         fs::create_dir_all(folder).map_err(blame)?;
         let aside = TempDir::new_in(folder).map_err(blame)?;
-        for (name, content) in &self.0 {
+        for (name, content) in &self.files {
             fs::write(aside.path().join(name), content).map_err(blame)?;
         }
-        for name in self.names() {
+        for (name, _) in &self.files {
             fs::rename(aside.path().join(name), folder.join(name)).map_err(blame)?;
         }
         for name in Files::NAMES.into_iter().filter(|name| self.names().all(|written| written != *name)) {
@@ -76,9 +93,9 @@ impl Files {
         Ok(())
     }
 
-    /// The names of the files.
+    /// The names of the files, and of those beside them.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.0.iter().map(|(name, _)| *name)
+        self.files.iter().map(|(name, _)| *name).chain(self.beside.iter().copied())
     }
 }
 

@@ -25,7 +25,7 @@ pub fn files(
 ) -> Result<Files, Failure> {
     let summary = Summary::new(solution, scale);
     let units = Units::new(scale);
-    Ok(Files(vec![
+    Ok(Files::of(vec![
         ("result.json", result.into_bytes()),
         ("history.csv", history(solution, scale, until).csv()?),
         ("contacts.csv", contacts_csv(&summary, &units)?),

@@ -36,11 +36,22 @@ pub(crate) fn plain_tree(part: &impl Serialize) -> Value {
 pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
     let text = utf8(read_bytes(path)?, path)?;
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    if is_toml {
+    let read = if is_toml {
         toml::parse(&text).map_err(|found| hinted(found, json::parse(&text, what).is_ok(), "JSON", ".json"))
     } else {
         let is_toml = || !text.trim().is_empty() && toml::parse(&text).is_ok();
         json::parse(&text, what).map_err(|found| hinted(found, is_toml(), "TOML", ".toml"))
+    };
+    read.map_err(|found| in_file(path, found))
+}
+
+/// A syntax error with the name of its file.
+fn in_file(path: &Path, found: SceneError) -> SceneError {
+    match found {
+        SceneError::Syntax { line, column, field, reason } => {
+            SceneError::Syntax { line, column, field, reason: format!("{reason} (in {})", path.display()) }
+        }
+        other => other,
     }
 }
 

@@ -193,7 +193,7 @@ pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
             return Err(InvalidInput::new("scene", quote(scene), "left out in the presence of scene_file").into());
         }
         let file = folder.join(name);
-        let mut scene = read_tree(&file, A_SCENE).map_err(|found| in_file(&file, found))?;
+        let mut scene = read_tree(&file, A_SCENE)?;
         read_tables_into(&mut scene, file.parent().unwrap_or(Path::new("")))?;
         map.remove("scene_file");
         map.insert("scene".to_owned(), scene);
@@ -201,16 +201,6 @@ pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
         read_tables_into(scene, folder)?;
     }
     Ok(from_tree(tree)?)
-}
-
-/// An error of the scene file, in contrast to one of the sweep file.
-fn in_file(path: &Path, found: SceneError) -> SceneError {
-    match found {
-        SceneError::Syntax { line, column, field, reason } => {
-            SceneError::Syntax { line, column, field, reason: format!("{reason} (in {})", path.display()) }
-        }
-        other => other,
-    }
 }
 
 /// Inserts the numbers of tables that the scene names. An error of the scene's own fields has their path.

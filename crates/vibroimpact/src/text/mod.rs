@@ -122,7 +122,8 @@ pub fn result(summary: &Summary) -> String {
         if share.abs() < NEGLIGIBLE {
             return format!("{:>12}", "0 J");
         }
-        format!("{:>12}  {:6.2} %", quantity(part, "J"), 100.0 * share)
+        // the sum removes the sign of a rounded zero
+        format!("{:>12}  {:6.2} %", quantity(part, "J"), (1e4 * share).round() / 1e2 + 0.0)
     };
     let _ = writeln!(text, "\n  energy, of {} before", quantity(energy.initial_j, "J"));
     for (name, part) in [
