@@ -2,7 +2,7 @@
 
 use contact_models::{Hertz, Law};
 use invalid_input::Path;
-use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{History, Mode, Posing, Recording, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::in_scene::in_scene;
 use crate::model::Kept;
@@ -59,11 +59,32 @@ impl Impact {
         solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
-    /// As [`Impact::record`], of an impact whose uncertainty is known: with cached tables, and without the comparison runs.
-    pub(crate) fn record_again(&self, kept: &mut Kept) -> Result<(Solution, History<Law>), InvalidInput> {
-        let settings = Settings { estimate_uncertainty: false, ..self.settings };
+    /// As [`Impact::solve`], with cached tables. The motion is returned, too, if the cache keeps motions.
+    pub(crate) fn solve_with(&self, kept: &mut Kept) -> Result<(Solution, Option<Recording>), InvalidInput> {
+        let Impact { structure, striker, law, start, settings, .. } = self;
+        if !kept.is_recording() {
+            let solver = kept.solver(structure)?;
+            return Ok((solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?, None));
+        }
+        let recording = self.keep_with(settings, kept)?;
+        Ok((recording.solution().clone(), Some(recording)))
+    }
+
+    fn keep_with(&self, settings: &Settings, kept: &mut Kept) -> Result<Recording, InvalidInput> {
         let solver = kept.solver(&self.structure)?;
-        solver.record(&self.striker, &self.law, self.start.as_ref(), &settings).map_err(in_scene)
+        solver.solve_and_keep(&self.striker, &self.law, self.start.as_ref(), settings).map_err(in_scene)
+    }
+
+    /// As [`Impact::record`], of an impact whose uncertainty is known: with its motion if it is kept, otherwise with cached tables
+    /// and without the comparison runs.
+    pub(crate) fn record_with(&self, kept: &mut Kept) -> Result<(Solution, History<Law>), InvalidInput> {
+        let recording = match kept.motion_on(&self.structure) {
+            Some(recording) => recording,
+            None => self.keep_with(&Settings { estimate_uncertainty: false, ..self.settings }, kept)?,
+        };
+        let counts = recording.counts();
+        let (solution, history) = recording.history(self.law);
+        Ok((Solution { counts, restitution_uncertainty: None, ..solution }, history))
     }
 }
 

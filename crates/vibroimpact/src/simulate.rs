@@ -61,14 +61,14 @@ impl Scene {
             let (scale, solution) = self.solve_infinite()?;
             return Ok(Simulation::Infinite { scale, solution });
         }
-        let kept = &mut Kept::default();
+        let kept = &mut Kept::recording();
         let choice = self.choose_and_judge(kept)?;
         let impact = match choice.impact {
             Some(impact) => impact,
             None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
             None => return Ok(Simulation::Net(choice.answer)),
         };
-        let (solution, history) = impact.record_again(kept)?;
+        let (solution, history) = impact.record_with(kept)?;
         let rod = match &self.structure {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,

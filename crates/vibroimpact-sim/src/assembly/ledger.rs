@@ -80,11 +80,7 @@ impl Moment<'_> {
 pub(crate) struct Account {
     bodies_j: Vec<f64>,
     stored_j: f64,
-    /// Bodies with damped modes.
-    damped: Vec<Range<usize>>,
-    /// Energy of the relative motion of the damped modes at the start of the flight (J).
-    flying_j: Option<f64>,
-    damping_j: f64,
+    damping: Dissipation,
     load_work_j: f64,
     /// Work of the contacts.
     contact_work_j: f64,
@@ -93,6 +89,16 @@ pub(crate) struct Account {
     /// Number of panels, each of which rounds the parts once.
     panels: u64,
     piece: Piece,
+}
+
+/// Energy that the relative motion loses to modal damping.
+pub(crate) struct Dissipation {
+    /// Bodies with damped modes.
+    damped: Vec<Range<usize>>,
+    /// Energy of the relative motion of the damped modes at the start of the flight (J).
+    flying_j: Option<f64>,
+    /// The loss until the start of this flight, or of the next panel (J).
+    pub lost_j: f64,
 }
 
 /// Since the last break of the loads.
@@ -106,16 +112,46 @@ struct Piece {
     turned: Vec<Vec<Complex64>>,
 }
 
+impl Dissipation {
+    pub fn new(system: &System) -> Dissipation {
+        let drags = |body: &&Range<usize>| (*body).clone().any(|k| system.drag[k] > 0.0);
+        Dissipation { damped: system.bodies.iter().filter(drags).cloned().collect(), flying_j: None, lost_j: 0.0 }
+    }
+
+    /// Adds a panel of `h`, with the contact forces.
+    pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Legendre]) {
+        if self.damped.is_empty() {
+            return;
+        }
+        if contacts.is_empty() {
+            self.flying_j.get_or_insert_with(|| damped_energy(&self.damped, start));
+            return;
+        }
+        self.land(start);
+        let (system, motion) = (start.system, (start.amplitude, start.rate));
+        let level = level_within(h);
+        self.lost_j += if step_s(level) == h {
+            tables.damping(system, level, contacts).lost(system, &self.damped, motion, contacts, force)
+        } else {
+            lost_within(system, &self.damped, h, motion, contacts, force)
+        };
+    }
+
+    /// Ends a flight, if there is one.
+    pub fn land(&mut self, now: &Moment) {
+        if let Some(energy) = self.flying_j.take() {
+            self.lost_j += energy - damped_energy(&self.damped, now);
+        }
+    }
+}
+
 impl Account {
     /// The balance at the start; `stored_j` is the energy stored in the contacts.
     pub fn open(bodies: &[Body], start: &Moment, stored_j: f64) -> Account {
-        let drags = |body: &&Range<usize>| (*body).clone().any(|k| start.system.drag[k] > 0.0);
         let mut account = Account {
             bodies_j: bodies.iter().map(energy).collect(),
             stored_j,
-            damped: start.system.bodies.iter().filter(drags).cloned().collect(),
-            flying_j: None,
-            damping_j: 0.0,
+            damping: Dissipation::new(start.system),
             load_work_j: 0.0,
             contact_work_j: 0.0,
             carried_j: stored_j,
@@ -128,22 +164,8 @@ impl Account {
 
     /// Adds a panel of `h` that is about to be accepted, with the contact forces.
     pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Legendre]) {
-        let system = start.system;
         self.panels += 1;
-        if !self.damped.is_empty() {
-            if contacts.is_empty() {
-                self.flying_j.get_or_insert_with(|| damped_energy(&self.damped, start));
-            } else {
-                self.land(start);
-                let motion = (start.amplitude, start.rate);
-                let level = level_within(h);
-                self.damping_j += if step_s(level) == h {
-                    tables.damping(system, level, contacts).lost(system, &self.damped, motion, contacts, force)
-                } else {
-                    lost_within(system, &self.damped, h, motion, contacts, force)
-                };
-            }
-        }
+        self.damping.panel(start, tables, h, contacts, force);
         if start.loads.is_empty() {
             return;
         }
@@ -161,13 +183,6 @@ impl Account {
     /// Adds the work of a contact on a panel; `moved` is the increase of its overlap up to the nodes, and up to the end.
     pub fn contact(&mut self, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
         add_work(&mut self.contact_work_j, force, moved, moved_at_end);
-    }
-
-    /// A flight ends.
-    fn land(&mut self, now: &Moment) {
-        if let Some(energy) = self.flying_j.take() {
-            self.damping_j += energy - damped_energy(&self.damped, now);
-        }
     }
 
     /// Begins a new piece with the present relative motion.
@@ -188,7 +203,7 @@ impl Account {
 
     /// Ends a piece at a break of the loads or at the end of the run.
     pub fn end_piece(&mut self, now: &Moment) {
-        self.land(now);
+        self.damping.land(now);
         self.carried_j = self.carried_j.max(now.carried_energy_of_all());
         if now.loads.is_empty() {
             return;
@@ -205,7 +220,7 @@ impl Account {
         for k in 0..system.modes.len() {
             let (a, b) = ([self.piece.amplitude[k], now.amplitude[k]], [self.piece.rate[k], now.rate[k]]);
             let (damping, work) = self.of_piece(now, k, (a, b), impulse[k], &waves, |j| turned[j][k]);
-            self.damping_j += damping;
+            self.damping.lost_j += damping;
             self.load_work_j += work;
         }
     }
@@ -263,7 +278,7 @@ impl Account {
         self.end_piece(end);
         let contact_work_j = self.contact_work_j;
         let (damping, work) = of_harmonics(end);
-        let modal_damping_j = self.damping_j + damping;
+        let modal_damping_j = self.damping.lost_j + damping;
         let load_work_j = self.load_work_j + work;
         let bodies_j: Vec<[f64; 2]> =
             self.bodies_j.iter().zip(energies(end)).map(|(start, end)| [*start, end]).collect();

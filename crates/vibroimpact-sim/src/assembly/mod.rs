@@ -59,7 +59,7 @@ mod flight;
 mod interpolation;
 mod judge;
 mod landing;
-mod ledger;
+pub(crate) mod ledger;
 pub(crate) mod load;
 mod load_change;
 mod march;

@@ -3,10 +3,11 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
-use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
+use super::solve::{Impact, LOOSEST, Run, Solver};
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{COARSER, Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
+use crate::assembly::solve::Keep;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use contact_models::ContactLaw;

@@ -49,7 +49,8 @@ pub struct EnergyLedger {
 /// The recorded motion of one impact. It is evaluated exactly at any time, given the contact force.
 #[derive(Debug, Clone)]
 pub struct History<L> {
-    recorded: Recorded<L>,
+    recorded: Recorded,
+    law: L,
     loads: Loads,
     end_s: f64,
     /// Time up to which the motion is known (s).
@@ -59,26 +60,24 @@ pub struct History<L> {
 
 /// The data of a run.
 #[derive(Debug, Clone)]
-pub(crate) struct Recorded<L> {
+pub(crate) struct Recorded {
     pub modes: Vec<Mode>,
     /// Those of them that move the contact.
     pub moved: Vec<usize>,
     pub striker: Striker,
     pub start: Start,
-    pub law: L,
     pub system: System,
     pub stretches: Vec<Stretch>,
-    /// Work of the contact, and dissipation by damping of the modes that move it (J).
-    pub contact_work_j: f64,
-    pub damping_j: f64,
 }
 
 impl<L: ContactLaw> History<L> {
-    pub(crate) fn new(recorded: Recorded<L>, solution: &Solution) -> History<L> {
+    /// With the work of the contact, and the dissipation by damping of the modes that move it (J).
+    pub(crate) fn new(recorded: Recorded, law: L, solution: &Solution, work_and_damping_j: [f64; 2]) -> History<L> {
         History {
-            ledger: recorded.ledger(solution),
+            ledger: recorded.ledger(solution, work_and_damping_j),
             loads: Loads::new(&[], &recorded.system),
             recorded,
+            law,
             end_s: solution.end_s,
             known_until_s: match solution.outcome {
                 Outcome::Rebound | Outcome::NoContact => f64::INFINITY,
@@ -117,7 +116,7 @@ impl<L: ContactLaw> History<L> {
     /// [`known_until_s`](History::known_until_s) as that time. The force is that of the law at the compression and its rate, and
     /// therefore never negative.
     pub fn at(&self, time_s: f64) -> Sample {
-        let laws: [&dyn ContactLaw; 1] = [&self.recorded.law];
+        let laws: [&dyn ContactLaw; 1] = [&self.law];
         let (panel, h) = self.panel(time_s, &laws);
         let contact = panel.contact_after(0, h);
         Sample {
@@ -175,8 +174,8 @@ impl<L: ContactLaw> History<L> {
     }
 }
 
-impl<L> Recorded<L> {
-    fn ledger(&self, end: &Solution) -> EnergyLedger {
+impl Recorded {
+    fn ledger(&self, end: &Solution, [contact_j, damping_j]: [f64; 2]) -> EnergyLedger {
         let mass_kg = self.striker.mass_kg;
         let kinetic = |speed: f64| if mass_kg.is_finite() { 0.5 * mass_kg * speed * speed } else { 0.0 };
         let before = energies(&self.modes, &self.start.amplitude, &self.start.rate);
@@ -185,8 +184,7 @@ impl<L> Recorded<L> {
         let unmoved: f64 = (0..self.modes.len()).filter(elastic).map(|k| before[k] - modes_j[k]).sum();
         let initial_j = kinetic(self.striker.speed_m_s) + before.iter().sum::<f64>();
         let striker_j = kinetic(end.striker_velocity_m_s);
-        let modal_damping_j = self.damping_j + unmoved;
-        let contact_j = self.contact_work_j;
+        let modal_damping_j = damping_j + unmoved;
         // a stop that moves does work
         let impulse: f64 = end.sub_impacts.iter().map(|contact| contact.impulse_n_s).sum();
         let work_of_stop = if mass_kg.is_finite() { 0.0 } else { self.striker.speed_m_s * impulse };

@@ -35,6 +35,7 @@ mod history;
 mod posed;
 pub(crate) mod problem;
 mod pulse;
+mod recording;
 mod solution;
 mod solve;
 mod time_unit;
@@ -45,5 +46,6 @@ pub use differentiate::{
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};
 pub use pulse::Pulse;
+pub use recording::Recording;
 pub use solution::{Counts, Outcome, Solution, SubImpact};
 pub use solve::Solver;

@@ -3,19 +3,20 @@
 use super::history::{History, Recorded, all_modes};
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
+use super::recording::Recording;
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
 use crate::StopReason;
 use crate::assembly::responses::Responses;
-use crate::assembly::solve::{self, follow};
+use crate::assembly::solve::{Keep, follow};
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
-use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
+use crate::assembly::{self, Assembly, Interval, Observer};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::f64::consts::SQRT_2;
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Loosest tolerance of a solution. At looser tolerances the steps, and thus the costs, hardly differ any more, and their errors
 /// would not be noticed.
@@ -57,7 +58,7 @@ pub struct Solver {
     /// Those that move the contact.
     moved: Vec<usize>,
     /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
-    tables: [OnceLock<Tables>; 2],
+    tables: [OnceLock<Arc<Tables>>; 2],
     /// The same structure in the other units of time, once they were needed.
     others: [OnceLock<Box<Solver>>; 2],
 }
@@ -78,18 +79,6 @@ struct Lowered {
     responses: Responses,
 }
 
-/// What is kept of a run beside its result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Keep {
-    Result,
-    /// The whole motion.
-    Motion,
-    /// The same, with the nearest miss.
-    NearestMiss,
-    /// The whole motion, with the energy ledger.
-    Record,
-}
-
 /// One run at one tolerance.
 pub(crate) struct Run {
     pub outcome: Outcome,
@@ -100,7 +89,6 @@ pub(crate) struct Run {
     rate: Vec<f64>,
     counts: Counts,
     contact_work_j: f64,
-    energy: Option<Ledger>,
     pub record: assembly::solve::Record,
 }
 
@@ -118,18 +106,11 @@ struct Flight {
 }
 
 /// Collects the intervals of contact.
-struct Watch {
-    intervals: Vec<Interval>,
-    records: bool,
-}
+struct Watch(Vec<Interval>);
 
 impl Observer for Watch {
     fn interval(&mut self, _: usize, interval: &Interval) {
-        self.intervals.push(*interval);
-    }
-
-    fn wants_energy(&self) -> bool {
-        self.records
+        self.0.push(*interval);
     }
 }
 
@@ -170,7 +151,13 @@ impl Solver {
         let same = moved.len() == self.moved.len()
             && moved.iter().zip(&self.moved).all(|(new, old)| modes[*new].of_body() == self.modes[*old].of_body());
         if same {
-            self.tables.iter_mut().filter_map(OnceLock::get_mut).for_each(Tables::change_weights);
+            for kept in &mut self.tables {
+                match kept.get_mut().map(Arc::get_mut) {
+                    Some(Some(tables)) => tables.change_weights(),
+                    // a recording has them, too
+                    _ => *kept = OnceLock::new(),
+                }
+            }
         } else {
             self.tables = Default::default();
         }
@@ -195,7 +182,27 @@ impl Solver {
         Ok(self.solve_into(striker, law, start, settings, Keep::Result)?.0)
     }
 
-    /// Solves one impact and keeps its whole history.
+    /// Solves one impact and keeps its motion.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_and_keep(
+        &self,
+        striker: &Striker,
+        law: &dyn ContactLaw,
+        start: Option<&Start>,
+        settings: &Settings,
+    ) -> Result<Recording, InvalidInput> {
+        let (solution, run) = self.solve_into(striker, law, start, settings, Keep::Motion)?;
+        let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
+        let system = System::new(&posed::assembly(&self.modes, &self.moved, striker, &start).with_laws(Vec::new()));
+        let tables = Arc::clone(self.tables(&system));
+        let (modes, moved, stretches) = (self.modes.clone(), self.moved.clone(), run.record.stretches);
+        let recorded = Recorded { modes, moved, striker: *striker, start, system, stretches };
+        Ok(Recording { solution, counts: run.counts, recorded, contact_work_j: run.contact_work_j, tables })
+    }
+
+    /// Solves one impact, with its whole history.
     ///
     /// # Errors
     /// As [`Solver::solve`].
@@ -206,21 +213,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<(Solution, History<L>), InvalidInput> {
-        let (solution, run) = self.solve_into(striker, law, start, settings, Keep::Record)?;
-        let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
-        let recorded = Recorded {
-            modes: self.modes.clone(),
-            moved: self.moved.clone(),
-            striker: *striker,
-            contact_work_j: run.contact_work_j,
-            damping_j: run.energy.map_or(0.0, |ledger| ledger.modal_damping_j),
-            law: law.clone(),
-            system: System::new(&posed::assembly(&self.modes, &self.moved, striker, &start).with_laws(Vec::new())),
-            start,
-            stretches: run.record.stretches,
-        };
-        let history = History::new(recorded, &solution);
-        Ok((solution, history))
+        Ok(self.solve_and_keep(striker, law, start, settings)?.history(law.clone()))
     }
 
     pub(crate) fn solve_into(
@@ -295,6 +288,11 @@ impl Solver {
         (WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX)
     }
 
+    /// The tables for a system of the structure, with or without a striker.
+    fn tables(&self, system: &System) -> &Arc<Tables> {
+        self.tables[usize::from(system.bodies.len() == 1)].get_or_init(|| Arc::new(Tables::new(system)))
+    }
+
     pub(crate) fn modes(&self) -> &[Mode] {
         &self.modes
     }
@@ -329,19 +327,15 @@ impl Solver {
             max_intervals: settings.max_sub_impacts as u64,
             stop_at_rest: true,
             stop_when_over: true,
-            rest_from_s: if keep == Keep::Record { settings.until_s } else { 0.0 },
+            rest_from_s: if keep == Keep::Result { 0.0 } else { settings.until_s },
         };
-        let kept = match keep {
-            Keep::Result => solve::Keep::Result,
-            Keep::Motion | Keep::Record => solve::Keep::Motion,
-            Keep::NearestMiss => solve::Keep::NearestMiss,
-        };
-        let mut watch = Watch { intervals: Vec::new(), records: keep == Keep::Record };
-        let tables = self.tables[usize::from(posed.bodies.len() == 1)].get_or_init(|| Tables::new(system));
-        let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, kept);
-        let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
+        let mut watch = Watch(Vec::new());
+        let tables = self.tables(system);
+        let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep);
+        let Watch(intervals) = watch;
+        let closed = intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
-            assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
+            assembly::Outcome::Parted if intervals.is_empty() => Outcome::NoContact,
             assembly::Outcome::Parted => Outcome::Rebound,
             assembly::Outcome::Rest | assembly::Outcome::End => Outcome::Sustained,
             assembly::Outcome::Stopped(reason) => Outcome::Stopped(stop_reason(reason, closed)),
@@ -358,13 +352,12 @@ impl Solver {
         Run {
             outcome,
             end_s: run.end_s,
-            sub_impacts: watch.intervals.iter().map(of).collect(),
+            sub_impacts: intervals.iter().map(of).collect(),
             striker_velocity_m_s: run.contacts[0].velocity_m_s[0],
             amplitude,
             rate,
             counts: run.counts,
             contact_work_j: run.contacts[0].statistics.work_j,
-            energy: run.energy,
             record,
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use vibroimpact_sim::modal::{Solver, Structure};
+use vibroimpact_sim::modal::{Recording, Solver, Structure};
 
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, KnownModes};
@@ -37,6 +37,10 @@ pub struct Kept {
     solvers: VecDeque<(Structure, Solver)>,
     /// Whether locations of impact hardly ever recur.
     passing: bool,
+    /// Whether motions are kept.
+    recording: bool,
+    /// The motion of the impact behind the last answer.
+    motion: Option<(Structure, Recording)>,
 }
 
 /// Number of cached solvers if locations hardly ever recur: a group of draws for indices has two locations.
@@ -55,9 +59,29 @@ impl Kept {
         Kept { passing: true, ..Kept::default() }
     }
 
+    /// A cache for one scene that also keeps the motion of the impact behind its answer.
+    pub(crate) fn recording() -> Kept {
+        Kept { recording: true, ..Kept::default() }
+    }
+
+    /// Whether motions are kept.
+    pub(crate) fn is_recording(&self) -> bool {
+        self.recording
+    }
+
+    /// Keeps the motion of the impact behind an answer, on this structure.
+    pub(crate) fn keep(&mut self, structure: &Structure, recording: Option<Recording>) {
+        self.motion = recording.map(|recording| (structure.clone(), recording));
+    }
+
+    /// The motion of the impact behind the last answer, if it was on this structure.
+    pub(crate) fn motion_on(&mut self, structure: &Structure) -> Option<Recording> {
+        self.motion.take().filter(|(kept, _)| kept == structure).map(|(_, recording)| recording)
+    }
+
     /// Empties the cache.
     pub(crate) fn clear(&mut self) {
-        *self = Kept { passing: self.passing, ..Kept::default() };
+        *self = Kept { passing: self.passing, recording: self.recording, ..Kept::default() };
     }
 
     /// A solver for a structure, with its cached tables.

@@ -16,7 +16,7 @@
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
-use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
+use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
@@ -27,7 +27,6 @@ use super::pose::{Pose, Source};
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::impact::Impact;
-use crate::in_scene::in_scene;
 use crate::text::small;
 
 /// The largest number of modes counts if it is this many times the one before; the change by a smaller step contains little
@@ -66,10 +65,10 @@ fn settings(tolerance: f64, tightened: usize) -> Settings {
 struct Rung {
     /// Number of modes from the lowest, including those that are not excited.
     count: usize,
-    structure: Structure,
-    remainder_modes: usize,
-    settings: Settings,
+    impact: Impact,
     solution: Solution,
+    /// Its motion, if motions are kept and no later number was tried.
+    recording: Option<Recording>,
     /// Frequency of the last mode relative to the contact, `R(N)` (`guess.rs`).
     resolution: f64,
     /// Possible error of the remainder modes, from their energy.
@@ -90,10 +89,13 @@ struct Tail {
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
-        let solution = solve(pose, &structure, &settings, cost)?;
+        let (striker, law) = (pose.striker, pose.law);
+        let impact = Impact { structure, remainder_modes, striker, law, start: None, settings };
+        let (solution, recording) = solve(pose, &impact, cost)?;
+        let Impact { structure, .. } = &impact;
         let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
-        let energy = energy_of_remainder(&structure, remainder_modes, &solution, &pose.striker) * too_short(resolution);
-        Ok(Rung { count, structure, remainder_modes, settings, solution, resolution, energy, tail: None })
+        let energy = energy_of_remainder(structure, remainder_modes, &solution, &pose.striker) * too_short(resolution);
+        Ok(Rung { count, impact, solution, recording, resolution, energy, tail: None })
     }
 
     /// Change with other remainder modes.
@@ -102,16 +104,17 @@ impl Rung {
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
         let mut changed = |other: Structure| {
-            let other = solve(pose, &other, &self.settings, cost)?;
+            let (other, _) = solve(pose, &Impact { structure: other, ..self.impact.clone() }, cost)?;
             Ok::<_, InvalidInput>(Change::between(&other, &self.solution, momentum_n_s(pose)).size())
         };
         let mut tail = Tail::default();
-        if listed && self.remainder_modes > 1 {
+        let Impact { structure, remainder_modes, .. } = &self.impact;
+        if listed && *remainder_modes > 1 {
             // for a list the shape of the tail is an assumption, whose effect another shape shows
-            tail.shape = changed(with_one_remainder_mode(&self.structure, self.remainder_modes))?;
+            tail.shape = changed(with_one_remainder_mode(structure, *remainder_modes))?;
         }
         if uncertain_m_n > 0.0 {
-            tail.compliance = changed(with_softer_remainder(&self.structure, self.remainder_modes, uncertain_m_n))?;
+            tail.compliance = changed(with_softer_remainder(structure, *remainder_modes, uncertain_m_n))?;
         }
         self.tail = Some(tail);
         Ok(())
@@ -122,16 +125,10 @@ impl Rung {
     }
 }
 
-fn solve(
-    pose: &mut Pose,
-    structure: &Structure,
-    settings: &Settings,
-    cost: &mut Cost,
-) -> Result<Solution, InvalidInput> {
-    let solver = pose.kept.solver(structure)?;
-    let solution = solver.solve(&pose.striker, &pose.law, None, settings).map_err(in_scene)?;
-    cost.add(&solution.counts, structure.modes.len());
-    Ok(solution)
+fn solve(pose: &mut Pose, impact: &Impact, cost: &mut Cost) -> Result<(Solution, Option<Recording>), InvalidInput> {
+    let solved = impact.solve_with(pose.kept)?;
+    cost.add(&solved.0.counts, impact.structure.modes.len());
+    Ok(solved)
 }
 
 fn momentum_n_s(pose: &Pose) -> f64 {
@@ -149,7 +146,13 @@ struct Rungs {
 
 impl Rungs {
     fn push(&mut self, next: Rung) {
-        self.earlier.push(std::mem::replace(&mut self.last, next));
+        let last = std::mem::replace(&mut self.last, next);
+        self.add_earlier(last);
+    }
+
+    /// Adds one before the last.
+    fn add_earlier(&mut self, rung: Rung) {
+        self.earlier.push(Rung { recording: None, ..rung });
     }
 
     /// All, the latest first.
@@ -218,7 +221,7 @@ impl Rungs {
             None if self.near().count() > 2 => self.sizes().first().copied().unwrap_or(1.0),
             None => 0.0,
         };
-        SOLVER_FLOOR * self.last.settings.tolerance + SOLVER_CHANGE * change
+        SOLVER_FLOOR * self.last.impact.settings.tolerance + SOLVER_CHANGE * change
     }
 
     fn counts(&self) -> String {
@@ -251,7 +254,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         // the energy of one impact shows that its modes are too few; otherwise a change has to
         let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
-            rungs.earlier.push(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
+            rungs.add_earlier(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
         }
         if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.tail.is_none() {
             rungs.last.find_tail(pose, cost)?;
@@ -265,7 +268,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         if settled || limit {
             return finish(pose, rungs, settled, cost);
         }
-        let tighter = rungs.last.settings.tolerance > SOLVER_RANGE.0;
+        let tighter = rungs.last.impact.settings.tolerance > SOLVER_RANGE.0;
         let next = if count >= PATIENCE && rungs.last.has_several_contacts() && !rungs.falls() {
             return finish(pose, rungs, false, cost);
         } else if !ends {
@@ -302,8 +305,8 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
     };
     let solver = rungs.solver();
     let stated = if settled { left_out.max((LUCK * left_out).min(pose.tolerance - solver)) } else { left_out };
-    let Rung { structure, remainder_modes, settings, solution, .. } = rungs.last;
-    let impact = Impact { structure, remainder_modes, striker: pose.striker, law: pose.law, start: None, settings };
+    let Rung { impact, solution, recording, .. } = rungs.last;
+    pose.kept.keep(&impact.structure, recording);
     let known = Known::new(pose.scene, Some(solver.min(1.0)), Ok(stated.min(1.0)));
     Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason }))
 }

@@ -20,7 +20,6 @@ use super::settle::Conclusion;
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
-use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
 
 /// The comparison begins with the expected number of modes for this tolerance.
@@ -39,7 +38,9 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     let chosen = chooses_modes(scene);
     // without an approach the number of modes does not matter
     let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
-    let solution = solve(&impact, kept, cost)?;
+    let (solution, recording) = impact.solve_with(kept)?;
+    cost.add(&solution.counts, impact.structure.modes.len());
+    kept.keep(&impact.structure, recording);
     let count = impact.kept_modes();
     let reason = match scene.modes {
         Modes::Count(_) => format!("modal: the {count} modes stated"),
@@ -63,10 +64,8 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
 }
 
 fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, InvalidInput> {
-    let solver = kept.solver(&impact.structure)?;
-    let Impact { striker, law, start, settings, structure, .. } = impact;
-    let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?;
-    cost.add(&solution.counts, structure.modes.len());
+    let (solution, _) = impact.solve_with(kept)?;
+    cost.add(&solution.counts, impact.structure.modes.len());
     Ok(solution)
 }
 
