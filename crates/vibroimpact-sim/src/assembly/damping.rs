@@ -4,11 +4,12 @@
 //! (`damping_form.rs`). A contact excites all modes of a body by the same polynomial, `g_nk = -psi_k F_n`. The part quadratic
 //! in the force is therefore summed over the modes only once, and a panel takes a few operations for each mode.
 
-use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS};
+use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS, all_by_parts, by_parts};
 use super::system::{Link, System};
 use crate::panel::dyadic::step_s;
+use crate::panel::lanes::Lanes;
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot};
-use crate::panel::vector::vectorized;
+use crate::panel::vector::{LANES, sum_of_lanes, vectorized};
 use std::array;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -28,6 +29,58 @@ struct ByMode {
     cross: Vec<(Nodal, Nodal)>,
 }
 
+impl ByMode {
+    /// Adds the next mode, with the square of its frequency.
+    #[inline(always)]
+    fn push(&mut self, square: f64, Form { bb, bq, qq }: &Form) {
+        // the first column, since the upper half is left at zero
+        let mut from_a = [0.0; Q];
+        let mut from_b = [0.0; Q];
+        for n in 0..Q {
+            (from_a[n], from_b[n]) = (-2.0 * square * qq[n][0], 2.0 * bq[n]);
+        }
+        self.free.push([square * square * qq[0][0], -2.0 * square * bq[0], *bb]);
+        self.cross.push((from_a, from_b));
+    }
+}
+
+/// Loss by the forces of two contacts, as it is summed over the modes.
+struct Sum {
+    /// In the list of pairs.
+    place: usize,
+    /// Of each mode.
+    weights: Vec<f64>,
+    /// The lower half, of modes taken one by one and of those taken [`LANES`] at a time.
+    alone: Matrix,
+    lanes: [[Lanes; Q]; Q],
+}
+
+impl Sum {
+    #[inline(always)]
+    fn add(&mut self, weight: f64, qq: &Matrix) {
+        for n in 0..Q {
+            for m in 0..=n {
+                self.alone[n][m] += weight * qq[n][m];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_lanes(&mut self, weights: Lanes, qq: &[[Lanes; Q]; Q]) {
+        for n in 0..Q {
+            for m in 0..=n {
+                self.lanes[n][m] = self.lanes[n][m] + weights * qq[n][m];
+            }
+        }
+    }
+
+    /// The whole matrix.
+    fn total(&self) -> Matrix {
+        let lower = |n: usize, m: usize| self.alone[n][m] + sum_of_lanes(self.lanes[n][m].0);
+        array::from_fn(|n| array::from_fn(|m| lower(n.max(m), n.min(m))))
+    }
+}
+
 impl Damping {
     pub fn new(system: &System) -> Damping {
         let pairs = std::iter::repeat_with(OnceLock::new).take(system.links.len().pow(2)).collect();
@@ -36,43 +89,52 @@ impl Damping {
 
     /// Computes everything for the step exponent `j` and these contacts that is not cached yet.
     pub fn prepare(&self, system: &System, j: i32, contacts: &[usize]) {
-        let mut missing: Vec<(usize, Vec<f64>, Box<Matrix>)> = Vec::new();
+        let mut missing: Vec<Sum> = Vec::new();
         for (i, &c) in contacts.iter().enumerate() {
             for &other in contacts[..=i].iter().filter(|other| system.neighbours[c].contains(other)) {
                 let place = c * system.links.len() + other;
                 if self.pairs[place].get().is_none() {
                     let mut weights = vec![0.0; system.modes.len()];
                     system.links[c].shared(&system.links[other]).for_each(|(k, weight)| weights[k] = weight);
-                    missing.push((place, weights, Box::new([[0.0; Q]; Q])));
+                    missing.push(Sum { place, weights, alone: [[0.0; Q]; Q], lanes: [[Lanes::ZERO; Q]; Q] });
                 }
             }
         }
         if missing.is_empty() {
             return;
         }
-        let (mut free, mut cross) = (Vec::with_capacity(system.modes.len()), Vec::with_capacity(system.modes.len()));
+        let h = step_s(j);
+        let count = system.modes.len();
+        let mut by_mode = ByMode { free: Vec::with_capacity(count), cross: Vec::with_capacity(count) };
         vectorized(
             #[inline(always)]
             || {
-                for (k, mode) in system.modes.iter().enumerate() {
-                    let Form { bb, bq, qq } = Form::of(mode, step_s(j));
-                    let square = system.square[k];
-                    free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
-                    cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
-                    for (_, weights, sum) in missing.iter_mut().filter(|(_, weights, _)| weights[k] != 0.0) {
-                        for n in 0..Q {
-                            for m in 0..Q {
-                                sum[n][m] += weights[k] * qq[n][m];
-                            }
+                for (block, modes) in system.modes.chunks(LANES).enumerate() {
+                    let first = block * LANES;
+                    if all_by_parts(modes, h) {
+                        // the last modes are padded by modes without weight
+                        let form = by_parts(&array::from_fn(|l| modes[l.min(modes.len() - 1)]), h);
+                        for (l, square) in system.square[first..][..modes.len()].iter().enumerate() {
+                            by_mode.push(*square, &form.of_lane(l));
+                        }
+                        for sum in &mut missing {
+                            let weights = Lanes::of(|l| if l < modes.len() { sum.weights[first + l] } else { 0.0 });
+                            sum.add_lanes(weights, &form.qq);
+                        }
+                    } else {
+                        for (l, mode) in modes.iter().enumerate() {
+                            let form = Form::of(mode, h);
+                            by_mode.push(system.square[first + l], &form);
+                            missing.iter_mut().for_each(|sum| sum.add(sum.weights[first + l], &form.qq));
                         }
                     }
                 }
             },
         );
         // another thread may have been first; its result is the same
-        let _ = self.by_mode.set(ByMode { free, cross });
-        for (place, _, sum) in missing {
-            let _ = self.pairs[place].set(sum);
+        let _ = self.by_mode.set(by_mode);
+        for sum in missing {
+            let _ = self.pairs[sum.place].set(Box::new(sum.total()));
         }
     }
 

@@ -16,9 +16,11 @@
 //! - a faster one that vibrates little or not at all: quadrature on panels that grow away from the start.
 
 use crate::panel::forcing::rate;
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::panel::lanes::{ComplexLanes, Lanes};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
+use crate::panel::vector::LANES;
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
@@ -35,12 +37,13 @@ pub(crate) const COARSE_NODES: usize = 12;
 pub(crate) static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
 static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
 
-/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J).
+/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
+/// upper half is left at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Form {
-    pub bb: f64,
-    pub bq: Nodal,
-    pub qq: Matrix,
+pub(crate) struct Form<T = f64> {
+    pub bb: T,
+    pub bq: [T; Q],
+    pub qq: [[T; Q]; Q],
 }
 
 impl Form {
@@ -51,14 +54,13 @@ impl Form {
     pub fn of(mode: &BodyMode, h: f64) -> Form {
         let turned = rate(mode) * h;
         if mode.damping_ratio * mode.omega_rad_s == 0.0 {
-            return Form::NONE;
-        }
-        if turned <= GENTLE {
+            Form::NONE
+        } else if turned <= GENTLE {
             COARSE.form(mode, h)
         } else if turned <= SLOW {
             FINE.form(mode, h)
         } else if mode.damping_ratio < NEARLY_CRITICAL {
-            by_parts(mode, h)
+            by_parts(&[*mode; LANES], h).of_lane(0)
         } else {
             by_quadrature(mode, h)
         }
@@ -70,7 +72,7 @@ impl Form {
         self.bb += weight * by_rate * by_rate;
         for n in 0..Q {
             self.bq[n] += weight * by_rate * by_force[n];
-            for m in 0..Q {
+            for m in 0..=n {
                 self.qq[n][m] += weight * by_force[n] * by_force[m];
             }
         }
@@ -155,74 +157,112 @@ impl<const M: usize> Series<M> {
     }
 }
 
-/// Below critical damping, for a mode that turns by more than a few radians.
+/// Whether all these modes turn by more than a few radians and are damped below critical damping.
 #[inline(always)]
-fn by_parts(mode: &BodyMode, h: f64) -> Form {
-    let sigma = mode.damping_ratio * mode.omega_rad_s;
-    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
-    let lambda = Complex64::new(-sigma, omega_d);
-    let (z, inverse) = (lambda * h, (lambda * h).inv());
+pub(crate) fn all_by_parts(modes: &[BodyMode], h: f64) -> bool {
+    let by_parts = |mode: &BodyMode| {
+        let damped = mode.damping_ratio * mode.omega_rad_s != 0.0 && mode.damping_ratio < NEARLY_CRITICAL;
+        damped && rate(mode) * h > SLOW
+    };
+    modes.iter().all(by_parts)
+}
+
+impl Form<Lanes> {
+    #[inline(always)]
+    pub fn of_lane(&self, l: usize) -> Form {
+        Form {
+            bb: self.bb.0[l],
+            bq: self.bq.map(|value| value.0[l]),
+            qq: self.qq.map(|row| row.map(|value| value.0[l])),
+        }
+    }
+}
+
+/// Modes for which [`all_by_parts`] holds.
+#[inline(always)]
+pub(crate) fn by_parts(modes: &[BodyMode; LANES], h: f64) -> Form<Lanes> {
+    let sigma = Lanes::of(|l| modes[l].damping_ratio * modes[l].omega_rad_s);
+    let omega_d =
+        Lanes::of(|l| modes[l].omega_rad_s * ((1.0 - modes[l].damping_ratio) * (1.0 + modes[l].damping_ratio)).sqrt());
+    let z = |l: usize| Complex64::new(-sigma.0[l], omega_d.0[l]) * h;
+    let inverse = ComplexLanes::of(|l| z(l).inv());
+    // the rate is Re(c e^{z x}) with this c
+    let scale = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::of(|l| sigma.0[l] / omega_d.0[l]) };
 
     // Q_n = sum_k P_n^(k)/z^(k+1) by Legendre coefficients: v_n/h = Re(scale (e^{z x} Q_n(0) - Q_n(x)))
-    let mut sums = [[Complex64::ZERO; Q]; Q];
+    let mut sums = [[ComplexLanes::ZERO; Q]; Q];
     sums[0][0] = inverse;
-    (sums[1][0], sums[1][1]) = (2.0 * inverse * inverse, inverse);
+    (sums[1][0], sums[1][1]) = (inverse * 2.0 * inverse, inverse);
     for n in 1..Q - 1 {
-        let factor = (4 * n + 2) as f64 * inverse;
+        let factor = inverse * (4 * n + 2) as f64;
         for d in 0..=n {
             sums[n + 1][d] = sums[n - 1][d] + factor * sums[n][d];
         }
-        sums[n + 1][n + 1] += inverse;
-        sums[n + 1][n - 1] -= inverse;
+        sums[n + 1][n + 1] = inverse;
+        sums[n + 1][n - 1] = sums[n + 1][n - 1] - inverse;
     }
-    let sign = |d: usize| if d.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let at_start = sums.map(|sum| sum.iter().enumerate().map(|(d, value)| sign(d) * value).sum::<Complex64>());
-    let at_end = sums.map(|sum| sum.iter().sum::<Complex64>());
-    let scale = -Complex64::i() * lambda / omega_d;
 
     // means of P_d e^{z x}, of e^{2 z x} and of |e^{z x}|^2
-    let whole = z.exp();
-    let moments: [Complex64; Q] = array::from_fn(|d| sign(d) * (whole * at_start[d] - at_end[d]));
-    let turned = (whole * whole - 1.0) * 0.5 * inverse;
-    let decay = 2.0 * sigma * h;
-    let decayed = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
+    let whole = ComplexLanes::of(|l| z(l).exp());
+    let (mut at_start, mut moments) = ([ComplexLanes::ZERO; Q], [ComplexLanes::ZERO; Q]);
+    for n in 0..Q {
+        let mut at_end = ComplexLanes::ZERO;
+        for (d, value) in sums[n].iter().enumerate().take(n + 1) {
+            at_end = at_end + *value;
+            at_start[n] = if d % 2 == 0 { at_start[n] + *value } else { at_start[n] - *value };
+        }
+        let moment = whole * at_start[n] - at_end;
+        moments[n] = if n % 2 == 0 { moment } else { ComplexLanes::ZERO - moment };
+    }
+    let one = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
+    let turned = (whole * whole - one) * 0.5 * inverse;
+    let decayed = Lanes::of(|l| {
+        let decay = 2.0 * sigma.0[l] * h;
+        if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay }
+    });
 
     // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}): the mean of a product is bilinear in the
     // coefficients, c, and the mean m of the polynomial times e^{z x}
-    let left = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
-        array::from_fn(|i| if i < Q { polynomial[i] } else { [m.re, m.im, c.re, c.im][i - Q] })
+    let left = |c: ComplexLanes, m: ComplexLanes| [m.re, m.im, c.re, c.im];
+    let right = |c: ComplexLanes, m: ComplexLanes| {
+        let turned = m + c * 0.5 * turned;
+        let half = decayed * 0.5;
+        [c.re, -c.im, turned.re + half * c.re, half * c.im - turned.im]
     };
-    let right = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
-        let turned = m + 0.5 * c * turned;
-        let rest = [c.re, -c.im, turned.re + 0.5 * decayed * c.re, 0.5 * decayed * c.im - turned.im];
-        array::from_fn(|i| if i < Q { polynomial[i] / (2 * i + 1) as f64 } else { rest[i - Q] })
+    let product = |one: &[Lanes; 4], other: &[Lanes; 4]| {
+        (one[0] * other[0] + one[1] * other[1]) + (one[2] * other[2] + one[3] * other[3])
     };
-    let by_rate = left(&[0.0; Q], scale, Complex64::ZERO);
-    let (mut by_force, mut others) = ([[0.0; PARTS]; Q], [[0.0; Q]; PARTS]);
+    let by_rate = left(scale, ComplexLanes::ZERO);
+    let mut polynomials = [[Lanes::ZERO; Q]; Q];
+    let mut others = [[Lanes::ZERO; 4]; Q];
+    let mut form = Form { bb: Lanes::ZERO, bq: [Lanes::ZERO; Q], qq: [[Lanes::ZERO; Q]; Q] };
+    // from a mean over the panel of products of rates, those to forces divided by h, to the loss
+    let loss = sigma * (2.0 * h);
     for n in 0..Q {
-        let polynomial = sums[n].map(|value| -(scale * value).re);
         let c = scale * at_start[n];
-        let m = polynomial.iter().zip(&moments).map(|(value, moment)| value * moment).sum();
-        by_force[n] = left(&polynomial, c, m);
-        for (other, value) in others.iter_mut().zip(right(&polynomial, c, m)) {
-            other[n] = value;
+        let mut m = ComplexLanes::ZERO;
+        for d in 0..=n {
+            polynomials[n][d] = scale.im * sums[n][d].im - scale.re * sums[n][d].re;
+            m = m + moments[d] * polynomials[n][d];
         }
-    }
-    let row = |one: &[f64; PARTS]| {
-        let mut row = [0.0; Q];
-        for (value, other) in one.iter().zip(&others) {
-            for n in 0..Q {
-                row[n] += value * other[n];
+        others[n] = right(c, m);
+        let row = left(c, m);
+        let mut weighted = [Lanes::ZERO; Q];
+        for d in 0..=n {
+            weighted[d] = polynomials[n][d] * (1.0 / (2 * d + 1) as f64);
+        }
+        for k in 0..=n {
+            let mut sum = product(&row, &others[k]);
+            for d in 0..=k {
+                sum = sum + weighted[d] * polynomials[k][d];
             }
+            form.qq[n][k] = sum * loss * (h * h);
         }
-        row
-    };
-    let bb = by_rate.iter().zip(right(&[0.0; Q], scale, Complex64::ZERO)).map(|(one, other)| one * other).sum();
-    Form { bb, bq: row(&by_rate), qq: by_force.map(|one| row(&one)) }.scaled(mode, h)
+        form.bq[n] = product(&by_rate, &others[n]) * loss * h;
+    }
+    form.bb = product(&by_rate, &right(scale, ComplexLanes::ZERO)) * loss;
+    form
 }
-
-/// Coefficients of a rate that is integrated by parts.
-const PARTS: usize = Q + 4;
 
 /// Any damping, on panels that grow away from the start.
 fn by_quadrature(mode: &BodyMode, h: f64) -> Form {
@@ -283,7 +323,7 @@ mod tests {
                 close(found.bb, known.bb, known.bb, 1.0);
                 for n in 0..Q {
                     close(found.bq[n], known.bq[n], (known.bb * known.qq[0][0]).sqrt(), grown(n));
-                    for m in 0..Q {
+                    for m in 0..=n {
                         close(found.qq[n][m], known.qq[n][m], known.qq[0][0], grown(n) * grown(m));
                     }
                 }

@@ -6,12 +6,13 @@ use super::damping::Damping;
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
-use crate::panel::forcing::{Compliance, Way, part};
+use crate::panel::forcing::{ByParts, Compliance, Way, by_quadrature, by_series};
 use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
 use std::array;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Response of one contact's overlap to the force of another.
@@ -213,28 +214,60 @@ fn accumulate(state: &mut [f64], psi: &[f64], table: &Rows<Q>, first: usize, for
     }
 }
 
+/// The modes of a body in order: at most [`LANES`] successive ones that are integrated by parts, or a single one.
+fn alike(modes: &[BodyMode], body: Range<usize>, h: f64) -> impl Iterator<Item = (Range<usize>, Way)> {
+    let (mut next, end) = (body.start, body.end);
+    std::iter::from_fn(move || {
+        let first = next;
+        let way = Way::of(modes[..end].get(first)?, h);
+        next += 1;
+        while way == Way::ByParts && next < end.min(first + LANES) && Way::of(&modes[next], h) == way {
+            next += 1;
+        }
+        Some((first..next, way))
+    })
+}
+
 impl Forced {
     /// Every mode on a panel of `h`, with responses at the nodes summed over the modes with these weights, gathered in one
     /// pass; `half` is free motion over half of it. Rigid modes take no part in the responses.
     pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<[Nodal; Q]>) {
         let n = system.modes.len();
-        let mut at_nodes = Vec::with_capacity(n);
-        let [mut amplitude, mut rate] = [(); 2].map(|()| Rows::new(n));
+        let mut forced =
+            Forced { at_nodes: vec![([0.0; Q], [0.0; Q]); n], amplitude: Rows::new(n), rate: Rows::new(n) };
         let mut sums = Sums::new(system, h, weights);
         for body in &system.bodies {
             let mut terms = 2;
-            for k in body.clone() {
-                let mode = &system.modes[k];
-                let way = Way::of(mode, h);
-                let part = part(mode, &way, h, &half.of(k), &mut terms);
-                sums.add(k, &way);
-                at_nodes.push(part.at_nodes);
-                amplitude.set(k, part.end.0);
-                rate.set(k, part.end.1);
+            for (modes, way) in alike(&system.modes, body.clone(), h) {
+                let first = modes.start;
+                let mode = &system.modes[first];
+                let part = match way {
+                    Way::ByParts => {
+                        vectorized(
+                            #[inline(always)]
+                            || {
+                                let by_parts = sums.add_by_parts(modes.clone());
+                                let (displacement, velocity) = by_parts.end();
+                                forced.amplitude.set_lanes(first, modes.len(), &displacement);
+                                forced.rate.set_lanes(first, modes.len(), &velocity);
+                                for (l, at_nodes) in forced.at_nodes[modes].iter_mut().enumerate() {
+                                    *at_nodes = by_parts.at_nodes(l);
+                                }
+                            },
+                        );
+                        continue;
+                    }
+                    Way::Series => by_series(mode, h, &half.of(first), &mut terms),
+                    Way::Quadrature => by_quadrature(mode, h),
+                };
+                sums.add_one(first, way);
+                forced.at_nodes[first] = part.at_nodes;
+                forced.amplitude.set(first, part.end.0);
+                forced.rate.set(first, part.end.1);
             }
             sums.end_body();
         }
-        (Forced { at_nodes, amplitude, rate }, sums.at_nodes())
+        (forced, sums.at_nodes())
     }
 
     /// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
@@ -242,8 +275,15 @@ impl Forced {
     fn again(system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<[Nodal; Q]> {
         let mut sums = Sums::new(system, h, weights);
         for body in &system.bodies {
-            for k in body.clone() {
-                sums.add(k, &Way::of(&system.modes[k], h));
+            for (modes, way) in alike(&system.modes, body.clone(), h) {
+                if way == Way::ByParts {
+                    vectorized(
+                        #[inline(always)]
+                        || sums.add_by_parts(modes.clone()),
+                    );
+                } else {
+                    sums.add_one(modes.start, way);
+                }
             }
             sums.end_body();
         }
@@ -313,12 +353,13 @@ impl Sums<'_> {
         Sums { system, h, weights, compliances, waiting: [0; LANES], count: 0 }
     }
 
-    /// Adds a mode; rigid ones take no part.
-    fn add(&mut self, k: usize, way: &Way) {
-        if self.system.modes[k].is_rigid() {
+    /// Adds a mode that is not integrated by parts; rigid ones take no part.
+    fn add_one(&mut self, k: usize, way: Way) {
+        let mode = &self.system.modes[k];
+        if mode.is_rigid() {
             return;
         }
-        if let Way::Series = way {
+        if way == Way::Series {
             self.waiting[self.count] = k;
             self.count += 1;
             if self.count == LANES {
@@ -327,8 +368,23 @@ impl Sums<'_> {
             return;
         }
         for (compliance, weights) in self.compliances.iter_mut().zip(self.weights).filter(|(_, all)| all[k] != 0.0) {
-            compliance.add_fast(&self.system.modes[k], way, weights[k], self.h);
+            compliance.add_by_quadrature(mode, weights[k], self.h);
         }
+    }
+
+    /// Adds at most [`LANES`] modes that are integrated by parts.
+    #[inline(always)]
+    fn add_by_parts(&mut self, modes: Range<usize>) -> ByParts {
+        // the last ones are padded by modes without weight
+        let mut padded = [self.system.modes[modes.start]; LANES];
+        padded[..modes.len()].copy_from_slice(&self.system.modes[modes.clone()]);
+        let by_parts = ByParts::new(&padded, self.h);
+        for (compliance, all) in self.compliances.iter_mut().zip(self.weights) {
+            let mut weights = [0.0; LANES];
+            weights[..modes.len()].copy_from_slice(&all[modes.clone()]);
+            compliance.add_by_parts(&by_parts, &weights);
+        }
+        by_parts
     }
 
     fn add_waiting(&mut self) {

@@ -90,7 +90,7 @@ fn series(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::forcing::{Part, Way, part};
+    use crate::panel::forcing::{Part, Way, along};
 
     fn mode(damping_ratio: f64) -> BodyMode {
         BodyMode { omega_rad_s: 1.0, damping_ratio }
@@ -98,11 +98,8 @@ mod tests {
 
     /// Everything at one damping ratio, by the ways of the march.
     fn all(mode: &BodyMode, h: f64) -> Vec<f64> {
-        let (whole, half, way) = (propagate(mode, h), propagate(mode, 0.5 * h), Way::of(mode, h));
-        let Part { at_nodes, end } = part(mode, &way, h, &half, &mut 2);
-        let mut compliance = Compliance::new();
-        compliance.add_fast(mode, &way, 1.0, h);
-        compliance.add_slow(&[*mode; 4], &[if let Way::Series = way { 0.25 } else { 0.0 }; 4], h);
+        let whole = propagate(mode, h);
+        let (Part { at_nodes, end }, compliance) = along(Way::of(mode, h), mode, h, &mut 2);
         let free = [whole.p11_less_1, whole.p12, whole.p21, whole.p22];
         let rows = [free.to_vec(), at_nodes.0.to_vec(), at_nodes.1.to_vec(), end.0.to_vec(), end.1.to_vec()];
         [rows.concat(), compliance.at_nodes(h).concat()].concat()

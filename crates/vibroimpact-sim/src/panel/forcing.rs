@@ -12,6 +12,7 @@
 //!   is a product of two short vectors for each mode;
 //! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series apply.
 
+use super::lanes::{ComplexLanes, Lanes};
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
 use super::oscillator::{BodyMode, NEARLY_CRITICAL, Propagator, propagate, response};
 use super::vector::{LANES, sum_of_lanes, vectorized};
@@ -19,10 +20,10 @@ use num_complex::Complex64;
 use std::array;
 
 /// Method of computing the response of a mode on a step.
-#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     Series,
-    ByParts(ByParts),
+    ByParts,
     Quadrature,
 }
 
@@ -31,25 +32,19 @@ impl Way {
         if rate(mode) * h <= SLOW {
             Way::Series
         } else if mode.damping_ratio < NEARLY_CRITICAL {
-            Way::ByParts(ByParts::new(mode, h))
+            Way::ByParts
         } else {
             Way::Quadrature
         }
     }
 }
 
-/// One mode on a step of `h`; `half` is its free motion over `h/2`. A mode needs no fewer `terms` of its series about the
+/// One slow mode on a step of `h`; `half` is its free motion over `h/2`. A mode needs no fewer `terms` of its series about the
 /// middle than a slower one.
-pub(crate) fn part(mode: &BodyMode, way: &Way, h: f64, half: &Propagator, terms: &mut usize) -> Part {
-    match way {
-        Way::Series => {
-            // as many even as odd ones
-            *terms = BASIS.terms::<HALF_SERIES>(0.5 * rate(mode) * h, *terms).next_multiple_of(2);
-            slow(mode, h, half, *terms)
-        }
-        Way::ByParts(sums) => sums.part(),
-        Way::Quadrature => by_quadrature(mode, h),
-    }
+pub(crate) fn by_series(mode: &BodyMode, h: f64, half: &Propagator, terms: &mut usize) -> Part {
+    // as many even as odd ones
+    *terms = BASIS.terms::<HALF_SERIES>(0.5 * rate(mode) * h, *terms).next_multiple_of(2);
+    slow(mode, h, half, *terms)
 }
 
 /// `|lambda|`, of the faster root if there are two (rad/s).
@@ -114,13 +109,29 @@ impl Compliance {
         self.terms = 2;
     }
 
-    /// Adds a mode with this weight that is not slow.
-    pub fn add_fast(&mut self, mode: &BodyMode, way: &Way, weight: f64, h: f64) {
-        match way {
-            Way::Series => {}
-            Way::ByParts(sums) => sums.add_to(self, weight),
-            Way::Quadrature => self.add_response(weight, h, |t| response(mode, t).0),
+    /// Adds modes that are integrated by parts, with these weights.
+    #[inline(always)]
+    pub fn add_by_parts(&mut self, modes: &ByParts, weights: &[f64; LANES]) {
+        for (l, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            let (inverse, scale) = (modes.inverse.of_lane(l), modes.scale.0[l]);
+            let mut power = inverse;
+            for value in &mut self.by_parts {
+                *value += weight * scale * power.im;
+                power *= inverse;
+            }
+            let (nodes_re, nodes_im) = &modes.to_nodes[l];
+            for (column, start) in self.legendre.iter_mut().zip(&modes.at_start) {
+                let (re, im) = (weight * scale * start.re.0[l], weight * scale * start.im.0[l]);
+                for i in 0..Q {
+                    column[i] -= re * nodes_im[i] + im * nodes_re[i];
+                }
+            }
         }
+    }
+
+    /// Adds any mode with this weight, by quadrature.
+    pub fn add_by_quadrature(&mut self, mode: &BodyMode, weight: f64, h: f64) {
+        self.add_response(weight, h, |t| response(mode, t).0);
     }
 
     /// Adds a response to unit Legendre forces with this weight.
@@ -230,63 +241,73 @@ fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
     [s_nodes, to_nodes, s_end, v_end]
 }
 
-/// A mode below critical damping, integrated by parts.
+/// Modes below critical damping, integrated by parts.
 pub(crate) struct ByParts {
-    sigma: f64,
-    omega_d: f64,
-    lambda: Complex64,
+    sigma: Lanes,
+    omega_d: Lanes,
+    lambda: ComplexLanes,
     /// `1/z` and `h/omega_d`.
-    inverse: Complex64,
-    scale: f64,
-    to_nodes: (Nodal, Nodal),
-    to_end: Complex64,
+    inverse: ComplexLanes,
+    scale: Lanes,
+    /// By mode.
+    to_nodes: [(Nodal, Nodal); LANES],
+    to_end: ComplexLanes,
     /// Sums of `P_n^(k)/z^(k+1)` at the end and at the start of the step.
-    at_end: [Complex64; Q],
-    at_start: [Complex64; Q],
+    at_end: [ComplexLanes; Q],
+    at_start: [ComplexLanes; Q],
 }
 
 impl ByParts {
-    fn new(mode: &BodyMode, h: f64) -> ByParts {
-        let sigma = mode.damping_ratio * mode.omega_rad_s;
-        let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
-        let lambda = Complex64::new(-sigma, omega_d);
-        let (inverse, scale) = ((lambda * h).inv(), h / omega_d);
-        let (to_nodes, to_end) = exponentials(sigma * h, omega_d * h);
+    #[inline(always)]
+    pub fn new(modes: &[BodyMode; LANES], h: f64) -> ByParts {
+        let sigma = Lanes::of(|l| modes[l].damping_ratio * modes[l].omega_rad_s);
+        let omega_d = Lanes::of(|l| {
+            let BodyMode { omega_rad_s, damping_ratio } = modes[l];
+            omega_rad_s * ((1.0 - damping_ratio) * (1.0 + damping_ratio)).sqrt()
+        });
+        let lambda = ComplexLanes { re: -sigma, im: omega_d };
+        let inverse = ComplexLanes::of(|l| (lambda.of_lane(l) * h).inv());
+        let scale = Lanes::of(|l| h / omega_d.0[l]);
+        let mut to_nodes = [([0.0; Q], [0.0; Q]); LANES];
+        let mut to_end = [Complex64::ZERO; LANES];
+        for l in 0..LANES {
+            (to_nodes[l], to_end[l]) = exponentials(sigma.0[l] * h, omega_d.0[l] * h);
+        }
         // both obey the recurrence of the spherical Bessel functions, in the direction in which it is stable
         let (mut at_end, mut at_start) = ([inverse; Q], [inverse; Q]);
-        let twice = 2.0 * inverse * inverse;
+        let twice = inverse * 2.0 * inverse;
         (at_end[1], at_start[1]) = (twice + inverse, twice - inverse);
         for n in 1..Q - 1 {
-            let factor = (4 * n + 2) as f64 * inverse;
+            let factor = inverse * (4 * n + 2) as f64;
             at_end[n + 1] = at_end[n - 1] + factor * at_end[n];
             at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
         }
+        let to_end = ComplexLanes::of(|l| to_end[l]);
         ByParts { sigma, omega_d, lambda, inverse, scale, to_nodes, to_end, at_end, at_start }
     }
 
-    fn add_to(&self, compliance: &mut Compliance, weight: f64) {
-        let ByParts { inverse, scale, to_nodes, at_start, .. } = self;
-        let mut power = *inverse;
-        for value in &mut compliance.by_parts {
-            *value += weight * scale * power.im;
-            power *= inverse;
+    /// Change of a mode by free motion at the nodes, from displacement and from velocity.
+    #[inline(always)]
+    pub fn at_nodes(&self, l: usize) -> (Nodal, Nodal) {
+        let (nodes_re, nodes_im) = &self.to_nodes[l];
+        let (mut from_displacement, mut sine) = ([0.0; Q], [0.0; Q]);
+        for i in 0..Q {
+            sine[i] = nodes_im[i] / self.omega_d.0[l];
+            from_displacement[i] = nodes_re[i] + self.sigma.0[l] * sine[i] - 1.0;
         }
-        for (column, start) in compliance.legendre.iter_mut().zip(at_start) {
-            let (re, im) = (weight * scale * start.re, weight * scale * start.im);
-            for i in 0..Q {
-                column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
-            }
-        }
+        (from_displacement, sine)
     }
 
-    fn part(&self) -> Part {
-        let ByParts { sigma, omega_d, lambda, scale, to_nodes, to_end, at_end, at_start, .. } = self;
-        let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
-        let sine = to_nodes.1.map(|im| im / omega_d);
-        Part {
-            at_nodes: (array::from_fn(|i| to_nodes.0[i] + sigma * sine[i] - 1.0), sine),
-            end: (moments.map(|e| scale * e.im), moments.map(|e| scale * (lambda * e).im)),
+    /// Displacements and velocities at the end of the step to unit Legendre forces, for unit weight.
+    #[inline(always)]
+    pub fn end(&self) -> ([Lanes; Q], [Lanes; Q]) {
+        let (mut displacement, mut velocity) = ([Lanes::ZERO; Q], [Lanes::ZERO; Q]);
+        for n in 0..Q {
+            let moment = self.to_end * self.at_start[n] - self.at_end[n];
+            displacement[n] = self.scale * moment.im;
+            velocity[n] = self.scale * (self.lambda * moment).im;
         }
+        (displacement, velocity)
     }
 }
 
@@ -310,9 +331,37 @@ fn exponentials(decay: f64, turn: f64) -> ((Nodal, Nodal), Complex64) {
 }
 
 /// Any mode, one node after the other.
-fn by_quadrature(mode: &BodyMode, h: f64) -> Part {
+pub(crate) fn by_quadrature(mode: &BodyMode, h: f64) -> Part {
     let at = BASIS.nodes.map(|c| propagate(mode, c * h));
     Part { at_nodes: (at.map(|p| p.p11_less_1), at.map(|p| p.p12)), end: response(mode, h) }
+}
+
+/// Weights of the same mode in all lanes, as one of unit weight.
+#[cfg(test)]
+const WEIGHTS: [f64; LANES] = [0.3, 0.0, 0.5, 0.2];
+
+/// One mode in this way.
+#[cfg(test)]
+pub(crate) fn along(way: Way, mode: &BodyMode, h: f64, terms: &mut usize) -> (Part, Compliance) {
+    let mut compliance = Compliance::new();
+    let part = match way {
+        Way::Series => {
+            compliance.add_slow(&[*mode; LANES], &WEIGHTS, h);
+            by_series(mode, h, &propagate(mode, 0.5 * h), terms)
+        }
+        Way::ByParts => {
+            let by_parts = ByParts::new(&[*mode; LANES], h);
+            compliance.add_by_parts(&by_parts, &WEIGHTS);
+            let (displacement, velocity) = by_parts.end();
+            let end = (displacement.map(|all| all.0[1]), velocity.map(|all| all.0[1]));
+            Part { at_nodes: by_parts.at_nodes(1), end }
+        }
+        Way::Quadrature => {
+            compliance.add_by_quadrature(mode, 1.0, h);
+            by_quadrature(mode, h)
+        }
+    };
+    (part, compliance)
 }
 
 #[cfg(test)]
@@ -347,17 +396,9 @@ mod tests {
         }
     }
 
-    /// By its own way, and by quadrature.
-    fn each_way(mode: &BodyMode, h: f64, way: &Way) -> ((Part, Compliance), (Part, Compliance)) {
-        let (mut one, mut other) = (Compliance::new(), Compliance::new());
-        one.add_fast(mode, way, 1.0, h);
-        if let Way::Series = way {
-            let weights = [0.3, 0.0, 0.5, 0.2];
-            one.add_slow(&[*mode; LANES], &weights, h);
-        }
-        other.add_fast(mode, &Way::Quadrature, 1.0, h);
-        let part = |way| super::part(mode, way, h, &propagate(mode, 0.5 * h), &mut 2);
-        ((part(way), one), (part(&Way::Quadrature), other))
+    /// By this way, and by quadrature.
+    fn each_way(mode: &BodyMode, h: f64, way: Way) -> ((Part, Compliance), (Part, Compliance)) {
+        (along(way, mode, h, &mut 2), along(Way::Quadrature, mode, h, &mut 2))
     }
 
     #[test]
@@ -366,7 +407,7 @@ mod tests {
             for zeta in [0.0, 0.02, 0.9, 0.9899, 0.995, 1.0, 1.2, 30.0] {
                 for turned in [SLOW, 0.99 * SLOW, 4.0, 2.0, 0.5, 1e-2, 1e-9] {
                     let mode = mode(turned / h / rate(&mode(1.0, zeta)), zeta);
-                    let both = each_way(&mode, h, &Way::Series);
+                    let both = each_way(&mode, h, Way::Series);
                     let angle = mode.omega_rad_s * h;
                     assert_close(both, h, angle * (angle + zeta), 2e-14, &format!("{turned} {zeta} {h}"));
                 }
@@ -380,7 +421,7 @@ mod tests {
             for zeta in [0.0, 0.02, 0.5, 0.9, 0.9899] {
                 for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
                     let mode = mode(turned / h, zeta);
-                    let both = each_way(&mode, h, &Way::ByParts(ByParts::new(&mode, h)));
+                    let both = each_way(&mode, h, Way::ByParts);
                     // the angle has a rounding error, and nearly equal roots cancel
                     let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
                     assert_close(both, h, 1.0, floor, &format!("{turned} {zeta} {h}"));
@@ -394,18 +435,13 @@ mod tests {
         let modes = [1e-15, 1e-3, 1e9, 1e15].into_iter().flat_map(|omega| [0.0, 0.5, 1.0, 1e6].map(|z| mode(omega, z)));
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
         for h in [1e-50, 1.0, 1e30] {
-            let (mut terms, mut compliance) = (2, Compliance::new());
+            let mut terms = 2;
             for mode in modes.clone() {
-                let way = Way::of(&mode, h);
-                compliance.add_fast(&mode, &way, 1.0, h);
-                if let Way::Series = way {
-                    compliance.add_slow(&[mode; LANES], &[0.25; LANES], h);
-                }
-                let part = part(&mode, &way, h, &propagate(&mode, 0.5 * h), &mut terms);
+                let (part, compliance) = along(Way::of(&mode, h), &mode, h, &mut terms);
                 assert!(finite(&part.at_nodes.0) && finite(&part.at_nodes.1), "{h}");
                 assert!(finite(&part.end.0) && finite(&part.end.1), "{h}");
+                assert!(finite(compliance.at_nodes(h).as_flattened()), "{h}");
             }
-            assert!(finite(compliance.at_nodes(h).as_flattened()), "{h}");
         }
     }
 }

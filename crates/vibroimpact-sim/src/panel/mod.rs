@@ -3,6 +3,7 @@
 pub(crate) mod by_damping;
 pub(crate) mod dyadic;
 pub(crate) mod forcing;
+pub(crate) mod lanes;
 pub(crate) mod legendre;
 pub(crate) mod oscillator;
 pub(crate) mod peak;

@@ -1,5 +1,7 @@
 //! A table of a few rows, one value for each mode, in one piece of memory.
 
+use super::lanes::Lanes;
+
 /// `R` rows of the same length.
 #[derive(Default)]
 pub(crate) struct Rows<const R: usize> {
@@ -17,6 +19,14 @@ impl<const R: usize> Rows<R> {
     pub fn set(&mut self, k: usize, values: [f64; R]) {
         for (row, value) in values.into_iter().enumerate() {
             self.values[row * self.length + k] = value;
+        }
+    }
+
+    /// Sets `count` values of each row from the `first` on.
+    #[inline(always)]
+    pub fn set_lanes(&mut self, first: usize, count: usize, values: &[Lanes; R]) {
+        for (row, Lanes(values)) in values.iter().enumerate() {
+            self.values[row * self.length + first..][..count].copy_from_slice(&values[..count]);
         }
     }
 
