@@ -1,5 +1,6 @@
 //! Checks of the book: every link has a target, every command in a `sh` fence runs and exits with the code that the page states,
-//! every `json scene` or `toml scene` fence holds a valid scene, and the brackets of every formula match.
+//! every line of a `text` fence that follows such a fence is a line of the commands' output (`...` stands for any lines), every
+//! `json scene` or `toml scene` fence holds a valid scene, and the brackets of every formula match.
 //!
 //! Commands run in a temporary folder with a copy of `datasets`, so that a page may write files. A line may end in
 //! `# exits with 2`. Rust snippets are documentation tests of the package `book-snippets`. Formulas are fences named `math` and
@@ -16,6 +17,7 @@ use vibroimpact::Scene;
 #[derive(Debug, PartialEq)]
 enum Item {
     Command { line: String, exit: i32 },
+    Output(String),
     JsonScene(String),
     TomlScene(String),
     Link(String),
@@ -33,16 +35,20 @@ pub fn run(root: &Path) -> Result<(), Failure> {
     copy(&root.join("datasets"), &workplace.path().join("datasets"))?;
     let program = program(root)?;
     let mut faults = Vec::new();
-    let mut counts = [0; 4];
+    let mut counts = [0; 5];
     for page in &pages {
         let name = page.strip_prefix(root).unwrap_or(page).display().to_string();
+        let mut printed = String::new();
         for item in items(&fs::read_to_string(page)?) {
             let (kind, result) = match &item {
-                Item::Command { line, exit } => (0, execute(line, *exit, &program, workplace.path())),
-                Item::JsonScene(text) => (1, scene(Scene::from_json(text))),
-                Item::TomlScene(text) => (1, scene(Scene::from_toml(text))),
-                Item::Link(target) => (2, follow(page, target)),
-                Item::Formula(text) => (3, formula(text)),
+                Item::Command { line, exit } => {
+                    (0, execute(line, *exit, &program, workplace.path()).map(|output| printed += &output))
+                }
+                Item::Output(text) => (1, shown(text, &std::mem::take(&mut printed))),
+                Item::JsonScene(text) => (2, scene(Scene::from_json(text))),
+                Item::TomlScene(text) => (2, scene(Scene::from_toml(text))),
+                Item::Link(target) => (3, follow(page, target)),
+                Item::Formula(text) => (4, formula(text)),
             };
             counts[kind] += 1;
             if let Err(fault) = result {
@@ -50,9 +56,10 @@ pub fn run(root: &Path) -> Result<(), Failure> {
             }
         }
     }
-    let [commands, scenes, links, formulas] = counts;
+    let [commands, outputs, scenes, links, formulas] = counts;
     eprintln!(
-        "{} pages: {commands} commands run, {scenes} scenes read, {links} links followed, {formulas} formulas read",
+        "{} pages: {commands} commands run, {outputs} outputs compared, {scenes} scenes read, {links} links followed, \
+         {formulas} formulas read",
         pages.len()
     );
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
@@ -62,6 +69,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
 fn items(page: &str) -> Vec<Item> {
     let mut found = Vec::new();
     let mut fence: Option<(String, String)> = None;
+    let mut after_commands = false;
     // whether the text before a code span ends in a dollar sign
     let mut dollar = false;
     for event in Parser::new_ext(page, Options::ENABLE_TABLES) {
@@ -76,13 +84,18 @@ fn items(page: &str) -> Vec<Item> {
                     inside.push_str(&text);
                 }
             }
-            Event::End(TagEnd::CodeBlock) => match fence.take() {
-                Some((kind, text)) if kind == "sh" => found.extend(commands(&text)),
-                Some((kind, text)) if kind == "json scene" => found.push(Item::JsonScene(text)),
-                Some((kind, text)) if kind == "toml scene" => found.push(Item::TomlScene(text)),
-                Some((kind, text)) if kind == "math" => found.push(Item::Formula(text)),
-                _ => {}
-            },
+            Event::End(TagEnd::CodeBlock) => {
+                let Some((kind, text)) = fence.take() else { continue };
+                let was_after_commands = std::mem::replace(&mut after_commands, kind == "sh");
+                match kind.as_str() {
+                    "sh" => found.extend(commands(&text)),
+                    "text" if was_after_commands => found.push(Item::Output(text)),
+                    "json scene" => found.push(Item::JsonScene(text)),
+                    "toml scene" => found.push(Item::TomlScene(text)),
+                    "math" => found.push(Item::Formula(text)),
+                    _ => {}
+                }
+            }
             Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => found.extend(link(&dest_url)),
             _ => {}
         }
@@ -142,17 +155,29 @@ fn scene(read: Result<Scene, vibroimpact::SceneError>) -> Result<(), Failure> {
     Ok(read.map(drop)?)
 }
 
-/// Runs a line of the shell with `vibroimpact` and `cargo xtask` built from this workspace.
-fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<(), Failure> {
+/// Checks that the lines of a page are lines of the output, in its order, apart from blanks.
+fn shown(page: &str, output: &str) -> Result<(), Failure> {
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let mut printed = output.lines().map(words);
+    for line in page.lines().map(words).filter(|line| !line.is_empty() && line != &["..."]) {
+        if !printed.any(|found| found == line) {
+            return Err(format!("the line `{}` is not in the output\n{output}", line.join(" ")).into());
+        }
+    }
+    Ok(())
+}
+
+/// Runs a line of the shell with `vibroimpact` and `cargo xtask` built from this workspace, and returns what it prints.
+fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<String, Failure> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(programs.to_owned()).chain(std::env::split_paths(&path)))?;
     let xtask = std::env::current_exe()?;
     let line = line.replace("cargo xtask", &format!("'{}'", xtask.display()));
     let output = Command::new("sh").args(["-c", &line]).current_dir(folder).env("PATH", path).output()?;
-    if output.status.code() == Some(exit) {
-        return Ok(());
-    }
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    if output.status.code() == Some(exit) {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned() + &told);
+    }
     Err(format!("`{line}` ended with {}, not with exit code {exit}\n{told}", output.status).into())
 }
 
@@ -205,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_page_is_taken_apart() {
-        let page = "[a](b.md#c) [d](https://e.f) $`x` and `y`$\n\n```sh\n# said only\nvibroimpact --help\nvibroimpact x \\\n  --y  # exits with 2\n```\n\n```json scene\n{}\n```\n";
+        let page = "[a](b.md#c) [d](https://e.f) $`x` and `y`$\n\n```sh\n# said only\nvibroimpact --help\nvibroimpact x \\\n  --y  # exits with 2\n```\n\nIt prints\n\n```text\nerror: x\n```\n\n```json scene\n{}\n```\n\n```text\nno output\n```\n";
         let command = |line: &str, exit| Item::Command { line: line.to_owned(), exit };
         assert_eq!(
             items(page),
@@ -214,9 +239,20 @@ mod tests {
                 Item::Formula("x".to_owned()),
                 command("vibroimpact --help", 0),
                 command("vibroimpact x    --y", 2),
+                Item::Output("error: x\n".to_owned()),
                 Item::JsonScene("{}\n".to_owned())
             ]
         );
+    }
+
+    #[test]
+    fn shown_lines_are_those_of_the_output() {
+        let output = "a  1\n\n  b 2\nc 3\n";
+        assert!(shown("a 1\n...\nc   3\n", output).is_ok());
+        assert!(
+            shown("b 2\na 1\n", output).unwrap_err().to_string().starts_with("the line `a 1` is not in the output")
+        );
+        assert!(shown("b 3\n", output).is_err());
     }
 
     /// `Name::Variant` for every public enum of the crates whose name has this ending.
