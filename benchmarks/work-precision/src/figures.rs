@@ -43,6 +43,39 @@ pub fn figure(problem: &str, rows: &[&Row], floor: f64) -> Figure {
     Figure::new(problem).row([time, cost]).width(980.0)
 }
 
+/// The impact of the overview.
+pub const OVERVIEW: &str = "pinned-hertz";
+
+/// Solvers of the overview: their names in the table and in the figure.
+const SHOWN: [(&str, &str); 8] = [
+    ("vibroimpact", "vibroimpact"),
+    ("vibroimpact, tables kept", "vibroimpact, further impacts on the same beam"),
+    ("DOP853 + exact flight", "DOP853 with the flight of vibroimpact between contacts"),
+    ("DOP853", "DOP853"),
+    ("scipy LSODA", "LSODA (scipy)"),
+    ("diffsol BDF", "BDF (diffsol)"),
+    ("CVODE BDF", "BDF (CVODE)"),
+    ("scipy Radau", "Radau (scipy)"),
+];
+
+/// Error against time of some solvers on one impact, for the README.
+pub fn overview(rows: &[Row]) -> Figure {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.problem == OVERVIEW).collect();
+    let norm = chief_norm(&rows);
+    let axes =
+        Panel::new(Axis::new("time of one impact").unit("s").log(), Axis::new(format!("error of the {norm}")).log());
+    let panel = SHOWN.iter().enumerate().fold(axes.height(300.0), |panel, (i, (solver, label))| {
+        let points = rows.iter().filter(|row| row.solver == *solver && row.norm == norm);
+        let (times, errors): (Vec<f64>, Vec<f64>) = points.filter_map(|row| row.time_s.zip(row.error)).unzip();
+        let (colour, marker, width) = match i {
+            0 | 1 => ([Colour::Blue, Colour::Black][i], Marker::Dot, 2.4),
+            _ => (COLOURS[i - 2], MARKERS[(i - 2) % MARKERS.len()], 1.0),
+        };
+        panel.with(Series::line_points(&times, &errors, marker).label(*label).colour(colour).line_width(width))
+    });
+    Figure::new("A steel ball on a pinned steel beam of 40 modes, Hertz's law, 8 contacts").row([panel]).width(800.0)
+}
+
 /// The name without the form in which the solver is used.
 fn base(solver: &str) -> &str {
     solver.split(" + ").next().unwrap_or(solver)

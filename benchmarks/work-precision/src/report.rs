@@ -1,7 +1,7 @@
 //! The page: measurements, machine, references, and a comparison with the targets.
 
 use crate::compare::{Standing, chief_norm, fastest, names, standing};
-use crate::figures::figure;
+use crate::figures::{OVERVIEW, figure, overview};
 use crate::measure::{Origin, Row};
 use crate::{impact, infinite, notes};
 use std::fmt::Write;
@@ -58,6 +58,10 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
         page.text(&format!("Solvers outside Rust, from `benchmarks/peers.sh`, measured apart:\n\n{}", outside.trim()));
     }
     let problems = names(rows.iter().map(|row| row.problem.as_str()));
+    if problems.contains(&OVERVIEW) {
+        let svg = overview(rows).svg().map_err(|error| error.to_string())?;
+        figures.push(("figures/speed-and-error.svg".to_owned(), svg));
+    }
 
     page.heading("Speed at equal error");
     page.text(notes::TARGETS);

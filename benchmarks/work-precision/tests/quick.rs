@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 use vibroimpact_sim::modal::{Settings, Solver};
 use work_precision::measure::{Effort, Origin, Row};
-use work_precision::{impact, report, run, table};
+use work_precision::{figures, impact, report, run, table};
 
 fn errors<'a>(rows: &'a [Row], solver: &'a str, norm: &'a str) -> Vec<(f64, f64)> {
     let rows = rows.iter().filter(|row| row.solver == solver && row.norm == norm);
@@ -76,7 +76,21 @@ fn a_quick_run_on_an_impact_gives_valid_rows_and_a_page() {
     let page = report::report(&rows, "here and now", None).unwrap();
     let markdown = page.report.markdown();
     assert!(markdown.contains("| pinned-hertz |") && markdown.contains("figures/work-precision-pinned-hertz.svg"));
-    assert_eq!(page.figures.len(), 1);
+    let names: Vec<&str> = page.figures.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["figures/speed-and-error.svg", "figures/work-precision-pinned-hertz.svg"]);
+}
+
+/// The figure of the README shows the table of the book. `VIBROIMPACT_BLESS=1` draws it anew.
+#[test]
+fn the_overview_shows_the_table() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let table = csv::Reader::from_path(docs.join("work-precision.csv")).unwrap().into_deserialize();
+    let drawn = figures::overview(&table.map(Result::unwrap).collect::<Vec<Row>>()).svg().unwrap();
+    let file = docs.join("figures/speed-and-error.svg");
+    if std::env::var_os("VIBROIMPACT_BLESS").is_some() {
+        std::fs::write(&file, &drawn).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(file).unwrap(), drawn);
 }
 
 #[test]

@@ -93,7 +93,7 @@ fn closed(found: &Simulation, contacts: &[usize]) -> Vec<(f64, f64)> {
 
 /// Each speed of approach plotted against the one before it.
 fn impact_map(found: &Simulation, contacts: &[usize]) -> Panel {
-    let axes = Panel::new(Axis::new("speed of approach").unit("m/s"), Axis::new("of the next").unit("m/s"));
+    let axes = Panel::new(Axis::new("speed of approach").unit("m/s"), Axis::new("next speed of approach").unit("m/s"));
     contacts.iter().enumerate().fold(axes.title("Impact map").height(170.0), |panel, (number, &c)| {
         let speeds: Vec<f64> = found.intervals[c].iter().map(|interval| interval.approach_speed_m_s).collect();
         let from = speeds.len().saturating_sub(MOST_MAPPED);
@@ -105,7 +105,7 @@ fn impact_map(found: &Simulation, contacts: &[usize]) -> Panel {
 
 /// The state of each contact once in each period.
 fn section(course: &Course, contacts: &[usize]) -> Panel {
-    let axes = Panel::new(Axis::new("gap").unit("m"), Axis::new("its rate").unit("m/s"));
+    let axes = Panel::new(Axis::new("gap").unit("m"), Axis::new("rate of the gap").unit("m/s"));
     let axes = axes.title("Once in each period of the load").height(170.0);
     contacts.iter().enumerate().fold(axes, |panel, (number, &c)| {
         let gap: Vec<f64> = course.section.iter().map(|row| 0.0 - row.contacts[c].overlap_m).collect();

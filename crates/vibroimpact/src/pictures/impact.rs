@@ -144,7 +144,7 @@ fn shares(resolved: &Resolved, until_s: f64) -> Panel {
     panel.with(band(&striker, &both, "structure", Colour::Vermilion)).with(band(
         &both,
         &ceiling,
-        "in the contact, or lost in it and by damping",
+        "in the contact, or dissipated",
         Colour::Grey,
     ))
 }
@@ -152,9 +152,9 @@ fn shares(resolved: &Resolved, until_s: f64) -> Panel {
 /// The force of the first contacts, each from its beginning.
 fn each_contact(contacts: &[Contact], samples: &[Sample]) -> Panel {
     let heading = match contacts.len() {
-        0 | 1 => "The contact".to_owned(),
-        n if n <= OVERLAID => "Each contact from its touch on".to_owned(),
-        n => format!("The first {OVERLAID} of {n} contacts, from touch on"),
+        0 | 1 => "Force of the contact".to_owned(),
+        n if n <= OVERLAID => "Force of each contact".to_owned(),
+        n => format!("Force of the first {OVERLAID} of {n} contacts"),
     };
     let axes = Panel::new(Axis::new("time since touch").unit("s"), Axis::new("contact force").unit("N"));
     contacts.iter().take(OVERLAID).enumerate().fold(axes.title(heading).height(130.0), |panel, (i, contact)| {
@@ -172,7 +172,7 @@ fn modal_energies(energies_j: &[f64]) -> Panel {
     let axis = Axis::new("energy").unit("J").log();
     let axis = if highest > 0.0 { axis.limits(LEAST_MODAL_ENERGY * highest, 3.0 * highest) } else { axis };
     Panel::new(Axis::new("mode").integers(), axis)
-        .title("Left in each mode at the end")
+        .title("Energy of each mode at the end")
         .height(130.0)
         .with(Series::stem(&number, energies_j, Marker::Dot).colour(Colour::Vermilion).line_width(0.8))
 }

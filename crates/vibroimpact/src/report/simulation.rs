@@ -230,14 +230,14 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
         ),
     };
     vec![
-        format!("Model: {}.", literal(reason)),
+        format!("The model is {}.", literal(reason)),
         structure,
         format!("{} modes{range}.", modes.len()),
         residual,
         format!("{}; the contact law is {}.", striker(scene, impact), scene.contact.law_name()),
         format!(
-            "The motion of the modes is exact, and only the contact force is approximated. The requested accuracy of the \
-             restitution is {}.",
+            "The motion of the modes is exact, and only the contact force is approximated, with a tolerance of {} for the \
+             restitution.",
             significant(impact.settings.tolerance, 2)
         ),
     ]
