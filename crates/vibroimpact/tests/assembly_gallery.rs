@@ -9,10 +9,10 @@ use vibroimpact::plot::Format;
 use vibroimpact::text::quantity;
 
 const ABOUT: &str = "# Gallery of scenes of bodies\n\n\
-    Each runs in a test, and has one of its own that checks its physics (`crates/vibroimpact/tests/assembly_physics.rs`).\n\
+    A test runs each of these scenes, and each has another test of its physics (`crates/vibroimpact/tests/assembly_physics.rs`).\n\
     `vibroimpact simulate NAME.json` gives these results in full; the table and the pictures are written by\n\
     `crates/vibroimpact/tests/assembly_gallery.rs` with `VIBROIMPACT_BLESS=1`. Where the times of the touches are certain to\n\
-    the end, their number is stated. To which motion a start leads is mapped by a sweep:\n\
+    the end, their number is stated. A sweep maps the motion to which each start leads:\n\
     [basins of a ball on a shaken table](../sweeps/shaken-table-basins.json),\n\
     [picture](../../docs/figures/shaken-table-basins.png).\n\n\
     | scene | outcome | touches | largest force | description |\n\

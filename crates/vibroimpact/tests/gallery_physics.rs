@@ -13,7 +13,7 @@ use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::Outcome;
 
 const ABOUT: &str = "# Gallery of scenes\n\n\
-    Each runs in a test; most have one of their own that checks its physics. `vibroimpact simulate NAME.json` gives\n\
+    A test runs each of these scenes, and most have another test of their physics. `vibroimpact simulate NAME.json` gives\n\
     the results of this table in full (`crates/vibroimpact/tests/gallery_physics.rs` writes it, with\n\
     `VIBROIMPACT_BLESS=1`). The description says where the numbers come from.\n\n\
     | scene | structure | contact | outcome | restitution | contacts | description |\n\
