@@ -126,7 +126,13 @@ fn relative(file: &str) -> Option<Item> {
 
 fn follow(page: &Path, target: &str) -> Result<(), Failure> {
     let place = page.parent().unwrap_or(Path::new("")).join(target);
-    if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
+    let place = place.canonicalize().map_err(|_| format!("the link {target} leads nowhere"))?;
+    // a book has no pages but those of its folder
+    let is_in_book = |path: &Path| path.iter().any(|part| part == "docs");
+    if is_in_book(page) && !is_in_book(&place) {
+        return Err(format!("the link {target} leads out of the book").into());
+    }
+    Ok(())
 }
 
 /// Checks that braces, environments and `\left`/`\right` brackets are closed in the order in which they are opened.
@@ -317,6 +323,13 @@ mod tests {
         assert!(execute("exit 2", 0, here.path(), here.path()).is_err());
         let page = here.path().join("page.md");
         assert!(follow(&page, "absent.md").is_err());
+        let book = here.path().join("docs");
+        fs::create_dir(&book).unwrap();
+        for file in [&page, &book.join("page.md")] {
+            fs::write(file, "").unwrap();
+        }
+        assert!(follow(&page, "docs/page.md").is_ok() && follow(&book.join("page.md"), "page.md").is_ok());
+        assert!(follow(&book.join("page.md"), "../page.md").is_err());
         assert!(scene(Scene::from_json("{}")).is_err());
         assert!(formula(r"\frac{1}{\{x\}} \Bigl[ y \Bigr]").is_ok());
         for open in [r"\frac{1}{2", "x}{", r"\begin{aligned} x", r"\Bigl[ y"] {

@@ -26,7 +26,7 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
   vibroimpact simulate ball.json --animate a.svg an animation of beam and ball in slow motion, for a browser
   vibroimpact simulate ball.json --out ball/ --until 0.5
-                                                 histories until half a second after the clock has started
+                                                 histories up to 0.5 s
   vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
 
 A scene with bodies in place of structure and striker is followed until its end_s or until it rests; progress is shown
