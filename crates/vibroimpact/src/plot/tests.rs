@@ -208,6 +208,9 @@ fn labels_that_would_overlap_are_raised_or_left_out_and_titles_are_broken() {
     assert_eq!(svg.lines().filter(|line| line.starts_with('n')).count(), 2);
     assert!(wrapped(&"word ".repeat(60), 14.0, 740.0).len() > 1);
     assert_eq!(wrapped("two\nlines", 14.0, 740.0), ["two", "lines"]);
+    // Seven words need two lines, of which neither is a single word.
+    let equal = wrapped(&"equal ".repeat(7), 14.0, 6.5 * width_px("equal ", 14.0));
+    assert_eq!(equal, ["equal equal equal equal", "equal equal equal"]);
     assert_eq!(wrapped("unbreakable", 14.0, 1.0), ["unbreakable"]);
     assert!(wrapped(" ", 14.0, 740.0).is_empty());
 }

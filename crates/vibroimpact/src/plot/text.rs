@@ -20,9 +20,16 @@ pub(super) fn width_px(text: &str, size_px: f64) -> f64 {
     em * size_px
 }
 
-/// A text in lines no wider than `room_px`, as far as its words allow; its own line breaks stay.
+/// A text in lines no wider than `room_px`, as far as its words allow; its own line breaks stay. The lines of a paragraph are
+/// as equally long as a narrower room makes them, so that no single word is left for the last one.
 pub(super) fn wrapped(text: &str, size_px: f64, room_px: f64) -> Vec<String> {
-    text.lines().flat_map(|paragraph| filled(paragraph, |line| width_px(line, size_px) <= room_px)).collect()
+    let paragraph = |text: &str| {
+        let within = |room_px: f64| filled(text, |line| width_px(line, size_px) <= room_px);
+        let lines = within(room_px);
+        let narrower = (1..20).map(|i| within(room_px * (1.0 - 0.025 * f64::from(i))));
+        narrower.take_while(|found| found.len() == lines.len()).last().unwrap_or(lines)
+    };
+    text.lines().flat_map(paragraph).collect()
 }
 
 /// Text without the characters that XML does not allow.
