@@ -138,6 +138,11 @@ impl Damping {
         }
     }
 
+    /// Loss by `F_n F'_m` of two contacts, the second not after the first. Needs [`Damping::prepare`].
+    pub fn of_pair(&self, system: &System, c: usize, other: usize) -> Option<&Matrix> {
+        self.pairs[c * system.links.len() + other].get().map(|pair| &**pair)
+    }
+
     /// Energy that these bodies lose to damping within a panel (J). Needs [`Damping::prepare`].
     pub fn lost(
         &self,
@@ -169,7 +174,7 @@ impl Damping {
             }
             lost -= dot(&by_motion, &force[i].0);
             for (j, &other) in contacts[..=i].iter().enumerate() {
-                if let Some(pair) = self.pairs[c * system.links.len() + other].get() {
+                if let Some(pair) = self.of_pair(system, c, other) {
                     let twice = if j < i { 2.0 } else { 1.0 };
                     lost += twice * dot(&force[i].0, &apply(pair, &force[j].0));
                 }

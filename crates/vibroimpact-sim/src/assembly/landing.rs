@@ -214,11 +214,11 @@ impl<'a> March<'a> {
     fn commit_landed(&mut self, window: &Window, landed: &Landed) {
         let (contacts, closed) = (window.contacts.as_slice(), window.closed);
         self.show(landed.length, &contacts[..closed], &landed.force);
-        if let Some(account) = &mut self.account {
+        if self.wants_contact_work() {
             for (i, &c) in contacts[..closed].iter().enumerate() {
                 let start = self.states[c].overlap;
                 let moved = landed.overlap[i].map(|at| at - start);
-                account.contact(&landed.force[i], &moved, landed.end[i][0] - start);
+                self.add_contact_work(&landed.force[i], &moved, landed.end[i][0] - start);
             }
         }
         terminal::coast(self.system, landed.length, &mut self.amplitude, &mut self.rate);

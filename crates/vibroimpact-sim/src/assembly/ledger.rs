@@ -33,11 +33,10 @@
 //! that of the linear loads). Products of two sinusoids are elementary, and computed once for the whole run.
 //!
 //! # Residual and rounding
-//! Only `unaccounted_j` is the difference of the other parts. It consists of the quadrature error of a contact's work and the
-//! rounding of all parts. The quadrature is exact if the overlap is a polynomial of degree 9, as between rigid bodies. Modes that turn
-//! fast on a panel, and only they, leave an error, which falls with the tolerance. The overlap with which Newton's method ends does
-//! not include the last change of the force. It is not used here, because its error would exceed the other errors at loose
-//! tolerances. Each panel rounds the parts relative to the energy of the relative motion. That energy is large if a
+//! Only `unaccounted_j` is the difference of the other parts, and consists of their rounding. A contact's work is computed by
+//! quadrature of its overlap, and exactly for the modes that turn fast on a panel (`excess.rs`). The overlap with which Newton's
+//! method ends does not include the last change of the force. It is not used here, because its error would exceed the other errors
+//! at loose tolerances. Each panel rounds the parts relative to the energy of the relative motion. That energy is large if a
 //! sampled load changes within a small part of a slow mode's period, or if the frequency of a harmonic load is nearly that of
 //! an undamped mode: the steady motion is then large, and free motion of the same size cancels it. Errors of two parts can
 //! cancel in `unaccounted_j`, so `rounding_j` states their bound.
@@ -46,14 +45,13 @@ use super::damping::lost_within;
 use super::load::Loads;
 use super::problem::Body;
 use super::solution::Ledger;
-use super::state::add_work;
 use super::system::System;
 use super::tables::Tables;
 use super::wave::{Wave, integral, turned_mean};
 use crate::panel::dyadic::{level_within, step_s};
-use crate::panel::legendre::{Legendre, Nodal};
+use crate::panel::legendre::Legendre;
 use num_complex::Complex64;
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 /// Relative modal state at a moment.
 #[derive(Clone, Copy)]
@@ -81,9 +79,7 @@ pub(crate) struct Account {
     bodies_j: Vec<f64>,
     stored_j: f64,
     damping: Dissipation,
-    load_work_j: f64,
-    /// Work of the contacts.
-    contact_work_j: f64,
+    load_work_j: Sum,
     /// Largest energy of the relative motion at the ends of the pieces, or stored in the contacts at the start (J).
     carried_j: f64,
     /// Number of panels, each of which rounds the parts once.
@@ -98,7 +94,30 @@ pub(crate) struct Dissipation {
     /// Energy of the relative motion of the damped modes at the start of the flight (J).
     flying_j: Option<f64>,
     /// The loss until the start of this flight, or of the next panel (J).
-    pub lost_j: f64,
+    pub lost_j: Sum,
+}
+
+/// A sum of millions of terms, with what its additions have rounded away.
+#[derive(Default)]
+pub(crate) struct Sum {
+    sum: f64,
+    rounded: f64,
+}
+
+impl AddAssign<f64> for Sum {
+    fn add_assign(&mut self, term: f64) {
+        let sum = self.sum + term;
+        // the part of the term that the sum contains
+        let taken = sum - self.sum;
+        self.rounded += (self.sum - (sum - taken)) + (term - taken);
+        self.sum = sum;
+    }
+}
+
+impl Sum {
+    pub fn total(&self) -> f64 {
+        self.sum + self.rounded
+    }
 }
 
 /// Since the last break of the loads.
@@ -115,7 +134,11 @@ struct Piece {
 impl Dissipation {
     pub fn new(system: &System) -> Dissipation {
         let drags = |body: &&Range<usize>| (*body).clone().any(|k| system.drag[k] > 0.0);
-        Dissipation { damped: system.bodies.iter().filter(drags).cloned().collect(), flying_j: None, lost_j: 0.0 }
+        Dissipation {
+            damped: system.bodies.iter().filter(drags).cloned().collect(),
+            flying_j: None,
+            lost_j: Sum::default(),
+        }
     }
 
     /// Adds a panel of `h`, with the contact forces.
@@ -152,8 +175,7 @@ impl Account {
             bodies_j: bodies.iter().map(energy).collect(),
             stored_j,
             damping: Dissipation::new(start.system),
-            load_work_j: 0.0,
-            contact_work_j: 0.0,
+            load_work_j: Sum::default(),
             carried_j: stored_j,
             panels: 0,
             piece: Piece::default(),
@@ -178,11 +200,6 @@ impl Account {
                 turned[c] += harmonic.turn(start.time_s) * h * turned_mean(harmonic.omega_rad_s * h, force);
             }
         }
-    }
-
-    /// Adds the work of a contact on a panel; `moved` is the increase of its overlap up to the nodes, and up to the end.
-    pub fn contact(&mut self, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
-        add_work(&mut self.contact_work_j, force, moved, moved_at_end);
     }
 
     /// Begins a new piece with the present relative motion.
@@ -273,13 +290,12 @@ impl Account {
         (damping, work)
     }
 
-    /// The final balance; `stored_j` is the energy stored in the contacts.
-    pub fn close(mut self, end: &Moment, stored_j: f64) -> Ledger {
+    /// The final balance; `stored_j` is the energy stored in the contacts, and `contact_work_j` the work on them.
+    pub fn close(mut self, end: &Moment, stored_j: f64, contact_work_j: f64) -> Ledger {
         self.end_piece(end);
-        let contact_work_j = self.contact_work_j;
         let (damping, work) = of_harmonics(end);
-        let modal_damping_j = self.damping.lost_j + damping;
-        let load_work_j = self.load_work_j + work;
+        let modal_damping_j = self.damping.lost_j.total() + damping;
+        let load_work_j = self.load_work_j.total() + work;
         let bodies_j: Vec<[f64; 2]> =
             self.bodies_j.iter().zip(energies(end)).map(|(start, end)| [*start, end]).collect();
         let gained: f64 = bodies_j.iter().map(|[start, end]| end - start).sum();

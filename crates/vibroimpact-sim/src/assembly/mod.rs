@@ -39,7 +39,7 @@
 //!
 //! Without closed contacts a panel is as long as the bound on the motion of the open ones allows.
 //!
-//! On request the energy balance is computed panel by panel (`ledger.rs`, `damping.rs`).
+//! On request the energy balance is computed panel by panel (`ledger.rs`, `damping.rs`, `excess.rs`).
 //!
 //! # Limits
 //! Bodies are linear, contacts are points that move along one axis; there is no friction. A harmonic load at the frequency
@@ -55,6 +55,7 @@ pub(crate) mod dense;
 pub(crate) mod differentiate;
 mod enclosure;
 mod event;
+mod excess;
 mod flight;
 mod interpolation;
 mod judge;

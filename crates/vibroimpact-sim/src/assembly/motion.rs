@@ -3,7 +3,7 @@
 use super::collocate::Newton;
 use super::dense::{Event, Stretch};
 use super::enclosure::Held;
-use super::ledger::{Account, Moment};
+use super::ledger::{Account, Moment, Sum};
 use super::load::Loads;
 use super::miss::Misses;
 use super::problem::{Posed, Settings};
@@ -52,6 +52,8 @@ pub(crate) struct March<'a> {
     pub(super) counts: Counts,
     /// The energy balance, if it is requested.
     pub(super) account: Option<Account>,
+    /// Work on the contacts (J), if the balance or the whole motion is requested.
+    pub(super) contact_work_j: Sum,
     /// All stretches of the motion, if they are requested, and the events since the last one.
     pub(super) record: Option<Vec<Stretch>>,
     pub(super) pending: Vec<(usize, Event)>,
@@ -125,6 +127,7 @@ impl<'a> March<'a> {
             states,
             counts: Counts::default(),
             account: None,
+            contact_work_j: Sum::default(),
             record: None,
             pending: Vec::new(),
             misses: None,

@@ -125,6 +125,8 @@ pub(crate) struct Record {
     /// Its stretches. If the bodies have separated for good, the last one is endless; otherwise the last one has zero length.
     pub stretches: Vec<Stretch>,
     pub nearest_miss: Option<NearMiss>,
+    /// Work on the contacts (J), without that which modes that turn fast on a panel add (`excess.rs`).
+    pub contact_work_j: f64,
 }
 
 /// One run, and what is to be kept of it.
@@ -144,14 +146,16 @@ pub(crate) fn follow(
         stretches.push(march.last());
     }
     let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
-    let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j()));
+    let contact_work_j = march.contact_work_j.total();
+    let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), contact_work_j));
     let (mut amplitude, mut rate) = (march.amplitude, march.rate);
     march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
     let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
     let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
     let (amplitude, rate) = (by_body(&amplitude), by_body(&rate));
     let run = Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts };
-    (run, Record { stretches, nearest_miss: march.misses.and_then(|misses| misses.nearest) })
+    let nearest_miss = march.misses.and_then(|misses| misses.nearest);
+    (run, Record { stretches, nearest_miss, contact_work_j })
 }
 
 fn contact_end(march: &March, c: usize) -> ContactEnd {

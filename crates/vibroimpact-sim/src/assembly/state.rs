@@ -3,7 +3,7 @@
 use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, dot, work_of_unit_forces};
 use crate::panel::peak::Peak;
 use contact_models::{Boundary, Branch, Memory};
 
@@ -114,7 +114,16 @@ impl State {
             statistics.compression_work_j += weight * power.max(0.0);
         }
         let moved = compression.map(|at| at - self.overlap);
-        add_work(&mut statistics.work_j, &force, &moved, end - self.overlap);
+        statistics.work_j += dot(&force.0, &work_of_unit_forces(&moved, end - self.overlap));
+    }
+
+    /// Begins the statistics anew, with the rest of an interval of contact.
+    pub fn begin_statistics(&mut self) {
+        self.statistics = Statistics::default();
+        if let Phase::Closed(touch) = &mut self.phase {
+            touch.interval.peak_force_n = touch.peak_force.value().max(touch.interval.peak_force_n);
+            touch.peak_force = Peak::NONE;
+        }
     }
 
     /// The interval that ends now.
@@ -129,15 +138,5 @@ impl State {
         self.statistics.intervals += 1;
         self.statistics.largest_force_n = self.statistics.largest_force_n.max(touch.interval.peak_force_n);
         Some(touch.interval)
-    }
-}
-
-/// Adds the work of a contact on a panel: its force, the increase of its compression up to the nodes, and up to the
-/// end. It is integrated by parts, because the compression is more accurate than its rate.
-pub(crate) fn add_work(work_j: &mut f64, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
-    let slope = apply(&BASIS.derivatives[1], &force.0);
-    *work_j += force.at(1.0) * moved_at_end;
-    for i in 0..Q {
-        *work_j -= BASIS.weights[i] * slope[i] * moved[i];
     }
 }

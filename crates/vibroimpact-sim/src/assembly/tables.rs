@@ -3,11 +3,12 @@
 //! so that runs and threads can share it and have the same results.
 
 use super::damping::Damping;
+use super::excess::{Excess, OnPanel, Pushed, has_fast_modes};
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
 use crate::panel::forcing::{ByParts, Compliance, Way, by_quadrature, by_series};
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, dot};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, apply, dot, work_of_unit_forces};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
@@ -47,6 +48,7 @@ struct Level {
     rotation: OnceLock<Rotation>,
     expanded: OnceLock<Expanded>,
     damping: OnceLock<Damping>,
+    excess: OnceLock<Excess>,
     missed: OnceLock<Missed>,
 }
 
@@ -80,10 +82,36 @@ impl Tables {
         damping
     }
 
+    /// Work of these closed contacts that quadrature misses, for the step exponent `j`; only for the energy balance. `None` if it
+    /// misses nothing. Needs [`Tables::prepare`].
+    pub fn excess(&self, system: &System, j: i32, contacts: &[usize]) -> Option<&Excess> {
+        if !has_fast_modes(system, step_s(j), contacts) {
+            return None;
+        }
+        let (rotation, Expanded { forced, .. }) = (self.rotation(system, j), self.expanded(j)?);
+        let on_panel = |k: usize| {
+            let free = rotation.of(k);
+            OnPanel { at_nodes: forced.at_nodes[k], at_end: (free.p11_less_1, free.p12), pushed: forced.pushed(k) }
+        };
+        let excess =
+            self.level(j).excess.get_or_init(|| Excess::new(system, step_s(j), (0..system.modes.len()).map(on_panel)));
+        let damping = (system.most_damping > 0.0).then(|| self.damping(system, j, contacts));
+        for (i, &c) in contacts.iter().enumerate() {
+            for &other in contacts[..=i].iter().filter(|&&other| system.share_elastic_modes(c, other)) {
+                let lost = damping.and_then(|damping| damping.of_pair(system, c, other));
+                let by_quadrature =
+                    [(c, other), (other, c)].map(|(c, other)| self.elastic_response(j, c, other).works());
+                excess.prepare(system, (c, other), |k| forced.pushed(k), lost, by_quadrature.each_ref());
+            }
+        }
+        Some(excess)
+    }
+
     /// Tables for a system with other weights of the elastic modes: everything that does not depend on them is reused.
     pub fn change_weights(&mut self) {
         for level in self.levels.iter_mut() {
             level.damping = OnceLock::new();
+            level.excess = OnceLock::new();
             if let Some(expanded) = level.expanded.get_mut() {
                 expanded.elastic = unset(self.contacts);
             }
@@ -302,6 +330,12 @@ impl Forced {
         (rows(&self.amplitude), rows(&self.rate))
     }
 
+    /// Motion of a mode at the end under unit Legendre forces.
+    fn pushed(&self, k: usize) -> Pushed {
+        let [amplitude, rate] = [&self.amplitude, &self.rate].map(|table| table.part(k, 1).map(|row| row[0]));
+        Pushed { amplitude, rate }
+    }
+
     /// Change of `sum_k psi_k a_k` by free motion at the nodes.
     pub fn free_at_nodes(&self, spans: &[Span], amplitude: &[f64], rate: &[f64]) -> Nodal {
         vectorized(
@@ -434,6 +468,12 @@ impl Response {
         end[1] += moved / 6.0;
         end_rate[0] -= inverse_mass * h;
         Response { nodes, end, end_rate }
+    }
+
+    /// Work of unit Legendre forces of one contact over the motion by those of the other, by quadrature: `[m][n]` of `P_n` over the
+    /// motion by `P_m`.
+    fn works(&self) -> Matrix {
+        array::from_fn(|m| work_of_unit_forces(&apply(&self.nodes, &BASIS.derivatives[0][m]), self.end[m]))
     }
 
     /// Overlap and its rate at the end of a panel, to a force.

@@ -6,7 +6,7 @@ use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, slopes};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, dot, slopes, work_of_unit_forces};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 const NEWTON_SHARE: f64 = 1e-2;
@@ -133,10 +133,12 @@ impl<'a> March<'a> {
         self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
     }
 
-    /// Adds the work of the closed contacts to the energy balance. The compressions with which Newton's method ended do not include
+    /// Adds the work on the closed contacts, if it is requested. The compressions with which Newton's method ended do not include
     /// the last change of the forces.
     fn account_for(&mut self, level: i32, trial: &Trial) {
-        let Some(account) = &mut self.account else { return };
+        if !self.wants_contact_work() {
+            return;
+        }
         let closed = &trial.contacts[..trial.closed];
         for (i, &c) in closed.iter().enumerate() {
             let mut moved = trial.unknowns[i].free;
@@ -146,8 +148,24 @@ impl<'a> March<'a> {
                     moved.iter_mut().zip(forced).for_each(|(moved, forced)| *moved += forced);
                 }
             }
-            account.contact(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
+            self.add_contact_work(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
         }
+        if self.account.is_some()
+            && let Some(excess) = self.tables.excess(self.system, level, closed)
+        {
+            self.contact_work_j += excess.work_j(self.system, (&self.amplitude, &self.rate), closed, &trial.force);
+        }
+    }
+
+    /// Whether the balance or the whole motion is requested.
+    pub(super) fn wants_contact_work(&self) -> bool {
+        self.account.is_some() || self.record.is_some()
+    }
+
+    /// Adds the work on a contact on a panel by quadrature; `moved` is the increase of its overlap up to the nodes, and up to the
+    /// end.
+    pub(super) fn add_contact_work(&mut self, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
+        self.contact_work_j += dot(&force.0, &work_of_unit_forces(moved, moved_at_end));
     }
 
     /// Accepts a panel of `h`.

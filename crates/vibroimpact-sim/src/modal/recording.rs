@@ -3,9 +3,10 @@
 use super::history::{History, Recorded};
 use super::solution::{Counts, Solution};
 use crate::assembly::dense::Stretch;
-use crate::assembly::ledger::{Dissipation, Moment};
+use crate::assembly::ledger::{Dissipation, Moment, Sum};
 use crate::assembly::load::Loads;
 use crate::assembly::tables::Tables;
+use crate::panel::dyadic::{level_within, step_s};
 use crate::panel::legendre::Legendre;
 use contact_models::ContactLaw;
 use std::fmt;
@@ -18,7 +19,7 @@ pub struct Recording {
     pub(crate) solution: Solution,
     pub(crate) counts: Counts,
     pub(crate) recorded: Recorded,
-    /// Work of the contact (J).
+    /// Work of the contact without that of fast modes (J).
     pub(crate) contact_work_j: f64,
     pub(crate) tables: Arc<Tables>,
 }
@@ -42,16 +43,18 @@ impl Recording {
 
     /// The history, for the law with which the impact was solved.
     pub fn history<L: ContactLaw>(self, law: L) -> (Solution, History<L>) {
-        let damping_j = self.damping_j();
-        let history = History::new(self.recorded, law, &self.solution, [self.contact_work_j, damping_j]);
+        let work_and_damping_j = self.work_and_damping_j();
+        let history = History::new(self.recorded, law, &self.solution, work_and_damping_j);
         (self.solution, history)
     }
 
-    /// Energy that the moved modes lose to damping (J).
-    fn damping_j(&self) -> f64 {
+    /// Work of the contact, and energy that the moved modes lose to damping (J).
+    fn work_and_damping_j(&self) -> [f64; 2] {
         let Recorded { system, stretches, .. } = &self.recorded;
         let loads = Loads::new(&[], system);
         let mut dissipation = Dissipation::new(system);
+        let mut work_j = Sum::default();
+        work_j += self.contact_work_j;
         for stretch in stretches {
             let Stretch { start_s, length_s, amplitude, rate, forces, .. } = stretch;
             let start = Moment { system, loads: &loads, time_s: *start_s, amplitude, rate };
@@ -59,7 +62,14 @@ impl Recording {
             dissipation.land(&start);
             let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().copied().unzip();
             dissipation.panel(&start, &self.tables, *length_s, &contacts, &force);
+            let level = level_within(*length_s);
+            if !contacts.is_empty()
+                && step_s(level) == *length_s
+                && let Some(excess) = self.tables.excess(system, level, &contacts)
+            {
+                work_j += excess.work_j(system, (amplitude, rate), &contacts, &force);
+            }
         }
-        dissipation.lost_j
+        [work_j.total(), dissipation.lost_j.total()]
     }
 }

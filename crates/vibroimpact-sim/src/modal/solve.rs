@@ -88,7 +88,6 @@ pub(crate) struct Run {
     amplitude: Vec<f64>,
     rate: Vec<f64>,
     counts: Counts,
-    contact_work_j: f64,
     pub record: assembly::solve::Record,
 }
 
@@ -199,7 +198,7 @@ impl Solver {
         let tables = Arc::clone(self.tables(&system));
         let (modes, moved, stretches) = (self.modes.clone(), self.moved.clone(), run.record.stretches);
         let recorded = Recorded { modes, moved, striker: *striker, start, system, stretches };
-        Ok(Recording { solution, counts: run.counts, recorded, contact_work_j: run.contact_work_j, tables })
+        Ok(Recording { solution, counts: run.counts, recorded, contact_work_j: run.record.contact_work_j, tables })
     }
 
     /// Solves one impact, with its whole history.
@@ -357,7 +356,6 @@ impl Solver {
             amplitude,
             rate,
             counts: run.counts,
-            contact_work_j: run.contacts[0].statistics.work_j,
             record,
         }
     }

@@ -38,6 +38,8 @@ pub(crate) struct Basis {
     within: [f64; SERIES],
     /// `derivatives[k][n][i]`: `d^k/ds^k P_n(2s-1)` at node `i`.
     pub derivatives: [Matrix; Q],
+    /// Nodal values to the integrals `-int P_n'(2s-1) xi ds`, by columns.
+    pub work_from_nodes: Matrix,
     /// Derivative at the nodes of the polynomial through the start (first) and the nodes (rest, by columns).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
@@ -82,6 +84,15 @@ pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     let basis = &*BASIS;
     let from_nodes = apply(&basis.slope_from_nodes, nodal);
     std::array::from_fn(|i| (basis.slope_from_start[i] * start + from_nodes[i]) / h)
+}
+
+/// Work of unit Legendre forces over a motion on a panel, from its increase up to the nodes and up to the end: `int P_n d xi`, by
+/// parts and by quadrature, which is exact for a motion of degree 9.
+#[inline(always)]
+pub(crate) fn work_of_unit_forces(moved: &Nodal, moved_at_end: f64) -> Nodal {
+    let mut work = apply(&BASIS.work_from_nodes, moved);
+    work.iter_mut().for_each(|work| *work += moved_at_end);
+    work
 }
 
 impl Legendre {
@@ -199,6 +210,13 @@ impl Basis {
             }
         }
 
+        let mut work_from_nodes = [[0.0; Q]; Q];
+        for i in 0..Q {
+            for n in 0..Q {
+                work_from_nodes[i][n] = -gauss[i].1 * derivatives[1][n][i];
+            }
+        }
+
         let slopes = |at: f64| derivative_weights(&nodes, at);
         let mut slope_from_start = [0.0; Q];
         let mut slope_from_nodes = [[0.0; Q]; Q];
@@ -219,6 +237,7 @@ impl Basis {
             about_middle,
             within,
             derivatives,
+            work_from_nodes,
             slope_from_start,
             slope_from_nodes,
             fine,
