@@ -2,10 +2,10 @@
 
 use crate::common::{Intervals, dormand_prince};
 use beam_modes::{Beam, End, RectangularSegment, Segment};
-use contact_models::{ContactLaw, Hertz, Law, LinearSpring, Memory};
+use contact_models::{ContactLaw, Hertz, KelvinVoigt, Law, LinearSpring, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
+    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, Statistics, run,
 };
 
 fn solve(assembly: &Assembly<Law>, end_s: f64, tolerance: f64) -> (Run, Vec<(usize, Interval)>) {
@@ -137,6 +137,67 @@ fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
         assert!((interval.end_s.unwrap() - start - pressed).abs() < 1e-12 * (1.0 + i as f64), "{i}");
         assert!((interval.peak_force_n / (1e6 / 10100f64.sqrt()) - 1.0).abs() < 1e-9);
     }
+}
+
+/// Statistics from a time within an interval of contact on, in closed form.
+#[test]
+fn statistics_begin_exactly_within_an_interval() {
+    let body = Body {
+        modes: vec![BodyMode { omega_rad_s: 10.0, damping_ratio: 0.0 }],
+        amplitude: vec![0.0],
+        rate: vec![10.0],
+    };
+    let law = Law::from(LinearSpring::new(1e6).unwrap());
+    let stop = Contact { sides: [Point::Ground, mass(0, 100.0)], gap_m: 0.0, law };
+    let assembly = Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![] };
+    let omega = 10100f64.sqrt();
+    let (pressed, free) = (PI / omega, PI / 10.0);
+    let run_from = |statistics_from_s: f64, end_s: f64| {
+        let settings = Settings { tolerance: 1e-12, statistics_from_s, ..Settings::until(end_s) };
+        run(&assembly, &settings, &mut ()).unwrap()
+    };
+    // force and power vanish, or have passed their largest value, at these parts of the fifth contact
+    for part in [0.25, 0.75] {
+        let from_s = 4.0 * (pressed + free) + part * pressed;
+        let found = run_from(from_s, from_s + pressed);
+        assert_eq!(found.statistics_from_s, from_s);
+        let Statistics { intervals, contact_time_s, impulse_n_s, largest_force_n, squared_force_n2_s, .. } =
+            found.contacts[0].statistics;
+        let (phase, force) = (part * PI, 1e6 / omega);
+        let near = |found: f64, known: f64| assert!((found / known - 1.0).abs() < 1e-9, "{part}: {found} {known}");
+        assert_eq!(intervals, 1);
+        near(contact_time_s, (1.0 - part) * pressed);
+        near(impulse_n_s, force / omega * (1.0 + phase.cos()));
+        near(largest_force_n, if part < 0.5 { force } else { force * phase.sin() });
+        near(squared_force_n2_s, force * force / omega * 0.5 * (PI - phase + phase.sin() * phase.cos()));
+    }
+    // in flight the remaining run is unchanged, and a later window has the rest of the intervals
+    let whole = run_from(0.0, 3.0).contacts[0].statistics;
+    let from_s = 3.0 * (pressed + free) - 0.5 * free;
+    let (before, after) = (run_from(0.0, from_s).contacts[0].statistics, run_from(from_s, 3.0).contacts[0].statistics);
+    assert_eq!(before.intervals + after.intervals, whole.intervals);
+    assert!(
+        (before.squared_force_n2_s + after.squared_force_n2_s - whole.squared_force_n2_s).abs()
+            < 1e-9 * whole.squared_force_n2_s
+    );
+}
+
+/// A run that comes to rest before the statistics begin goes on until they do.
+#[test]
+fn statistics_of_a_body_at_rest_are_those_of_its_weight() {
+    let law = Law::from(KelvinVoigt::new(1e5, 50.0).unwrap());
+    let contact = Contact { sides: [mass(0, 0.1), Point::Ground], gap_m: 0.0, law };
+    let weight = Load { body: 0, shape: vec![0.1f64.sqrt()], force: Force::Constant { force_n: -10.0 } };
+    let assembly = Assembly { bodies: vec![Body::mass(0.1, 1e-4, 0.0)], contacts: vec![contact], loads: vec![weight] };
+    let settings = Settings { statistics_from_s: 2.0, rest_from_s: 2.0, ..Settings::until(5.0) };
+    let found = run(&assembly, &settings, &mut ()).unwrap();
+    assert_eq!((found.outcome, found.statistics_from_s), (Outcome::Rest, 2.0));
+    let Statistics { squared_force_n2_s, contact_time_s, largest_force_n, .. } = found.contacts[0].statistics;
+    assert!(found.end_s > 2.0 && (contact_time_s - (found.end_s - 2.0)).abs() < 1e-12, "{found:?}");
+    assert!(
+        ((squared_force_n2_s / contact_time_s).sqrt() - 1.0).abs() < 1e-6 && (largest_force_n - 1.0).abs() < 1e-6,
+        "{found:?}"
+    );
 }
 
 #[test]

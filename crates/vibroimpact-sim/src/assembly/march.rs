@@ -48,6 +48,10 @@ impl<'a> March<'a> {
             if self.time_s >= self.loads.next_break_s() {
                 self.pass_break();
             }
+            if self.time_s >= self.statistics_from_s {
+                self.begin_statistics();
+                self.forget_horizons();
+            }
             if !self.states.iter().any(State::is_closed) {
                 if self.fly() {
                     break Outcome::Parted;
@@ -89,7 +93,7 @@ impl<'a> March<'a> {
     }
 
     fn looks_for_rest(&mut self) -> bool {
-        let now = self.counts.contact_steps >= self.ask_rest_at && self.time_s >= self.settings.rest_from_s;
+        let now = self.counts.contact_steps >= self.ask_rest_at && self.time_s > self.settings.rest_from_s;
         if now {
             self.ask_rest_at = self.counts.contact_steps + REST;
         }

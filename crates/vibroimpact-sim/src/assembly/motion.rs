@@ -78,6 +78,8 @@ pub(crate) struct March<'a> {
     /// Length of the last panel of flight (s).
     pub(super) flown: f64,
     pub(super) intervals: u64,
+    /// Time from which statistics are taken (s); infinite once it has passed.
+    pub(super) statistics_from_s: f64,
     pub(super) last_event_s: f64,
     pub(super) events_at_once: u64,
     pub(super) stop: Option<Reason>,
@@ -142,6 +144,11 @@ impl<'a> March<'a> {
             try_laws_at: 0,
             flown: 0.0,
             intervals: 0,
+            statistics_from_s: if settings.statistics_from_s > 0.0 {
+                settings.statistics_from_s
+            } else {
+                f64::INFINITY
+            },
             last_event_s: -1.0,
             events_at_once: 0,
             stop: None,
@@ -166,9 +173,13 @@ impl<'a> March<'a> {
         (self.time_s, &self.amplitude, &self.rate)
     }
 
-    /// Time until the loads change or the run ends (s).
+    /// Time until the loads change, statistics begin or the run ends (s).
     pub(super) fn lasting(&self) -> f64 {
-        (self.settings.end_s.min(self.loads.next_break_s()) - self.time_s).max(0.0)
+        (self.next_stop_s() - self.time_s).max(0.0)
+    }
+
+    fn next_stop_s(&self) -> f64 {
+        self.settings.end_s.min(self.loads.next_break_s()).min(self.statistics_from_s)
     }
 
     pub(super) fn law(&self, c: usize) -> &'a dyn ContactLaw {
@@ -233,6 +244,12 @@ impl<'a> March<'a> {
         self.level = level;
     }
 
+    /// Begins the statistics of all contacts anew.
+    pub(super) fn begin_statistics(&mut self) {
+        self.statistics_from_s = f64::INFINITY;
+        self.states.iter_mut().for_each(State::begin_statistics);
+    }
+
     /// Discards the expected event.
     pub(super) fn forget_horizons(&mut self) {
         self.horizon = None;
@@ -251,9 +268,9 @@ impl<'a> March<'a> {
         self.time_s += h;
     }
 
-    /// The end of the run and the breaks of loads are reached exactly.
+    /// The end of the run, the start of the statistics and the breaks of loads are reached exactly.
     pub(super) fn arrive_exactly(&mut self) {
-        let target = self.settings.end_s.min(self.loads.next_break_s());
+        let target = self.next_stop_s();
         if target.is_finite() && (self.time_s - target).abs() <= 1e-12 * target {
             self.time_s = target;
         }

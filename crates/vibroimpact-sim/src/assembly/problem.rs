@@ -139,6 +139,8 @@ pub struct Settings {
     pub stop_when_over: bool,
     /// Rest is not checked before this time (s). Default 0.
     pub rest_from_s: f64,
+    /// Statistics of the contacts cover the motion from this time on (s), less than `end_s`. Default 0, the whole run.
+    pub statistics_from_s: f64,
 }
 
 impl Settings {
@@ -152,6 +154,7 @@ impl Settings {
             stop_at_rest: true,
             stop_when_over: false,
             rest_from_s: 0.0,
+            statistics_from_s: 0.0,
         }
     }
 
@@ -161,6 +164,9 @@ impl Settings {
         InvalidInput::unless(within || endless, "end_s", self.end_s, "a positive number up to 1e12 s")?;
         let from = (0.0..=SCALE_MAX).contains(&self.rest_from_s);
         InvalidInput::unless(from, "rest_from_s", self.rest_from_s, "0 or a positive number of seconds, at most 1e30")?;
+        let before_end = self.statistics_from_s >= 0.0 && self.statistics_from_s < self.end_s;
+        let allowed = "0 or a positive number of seconds, less than end_s";
+        InvalidInput::unless(before_end, "statistics_from_s", self.statistics_from_s, allowed)?;
         InvalidInput::unless(
             (FINEST_TOLERANCE..=0.1).contains(&self.tolerance),
             "tolerance",

@@ -88,10 +88,10 @@ pub struct Interval {
     pub separation_speed_m_s: Option<f64>,
 }
 
-/// Statistics of a contact over the whole run.
+/// Statistics of a contact from [`Run::statistics_from_s`] to the end of the run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
-    /// Intervals of contact.
+    /// Intervals of contact that end in this time or are under way at its end.
     pub intervals: u64,
     /// Time in contact (s).
     pub contact_time_s: f64,
@@ -99,9 +99,9 @@ pub struct Statistics {
     pub impulse_n_s: f64,
     /// Largest force (N).
     pub largest_force_n: f64,
-    /// `int F^2 dt` (N^2 s): over the time of the run, the square of the root mean square of the force.
+    /// `int F^2 dt` (N^2 s): over this time, the square of the root mean square of the force.
     pub squared_force_n2_s: f64,
-    /// `int F xi' dt` while the compression grows (J): over the time of the run, the contact work rate.
+    /// `int F xi' dt` while the compression grows (J): over this time, the contact work rate.
     pub compression_work_j: f64,
     /// `int F xi' dt` (J): the energy that the contact has received, stored or dissipated.
     pub work_j: f64,
@@ -187,6 +187,8 @@ pub struct Run {
     pub outcome: Outcome,
     /// The time at which it ended (s).
     pub end_s: f64,
+    /// The time from which the statistics of the contacts are taken (s); 0 if the run ended before the requested time.
+    pub statistics_from_s: f64,
     /// Modal amplitudes at the end (m kg^1/2), body by body.
     pub amplitude: Vec<Vec<f64>>,
     /// Their rates (m kg^1/2 / s).

@@ -153,7 +153,17 @@ pub(crate) fn follow(
     let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
     let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
     let (amplitude, rate) = (by_body(&amplitude), by_body(&rate));
-    let run = Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts };
+    let statistics_from_s = if march.statistics_from_s.is_finite() { 0.0 } else { settings.statistics_from_s };
+    let run = Run {
+        outcome,
+        end_s: march.time_s,
+        statistics_from_s,
+        amplitude,
+        rate,
+        contacts,
+        energy,
+        counts: march.counts,
+    };
     let nearest_miss = march.misses.and_then(|misses| misses.nearest);
     (run, Record { stretches, nearest_miss, contact_work_j })
 }

@@ -53,7 +53,9 @@ pub(crate) struct Touch {
     pub rate_residue: f64,
     /// The last panel's force, and its length.
     pub previous: Option<(Legendre, f64)>,
+    /// With the largest force until statistics began.
     pub interval: Interval,
+    /// Since then.
     pub peak_force: Peak,
     pub peak_compression: Peak,
 }
@@ -129,14 +131,15 @@ impl State {
     /// The interval that ends now.
     pub fn finish(&mut self, released: Option<(f64, f64)>) -> Option<Interval> {
         let Phase::Closed(touch) = &mut self.phase else { return None };
-        touch.interval.peak_force_n = touch.peak_force.value();
+        let peak_force_n = touch.peak_force.value();
+        touch.interval.peak_force_n = peak_force_n.max(touch.interval.peak_force_n);
         touch.interval.peak_compression_m = touch.peak_compression.value();
         if let Some((time_s, rate)) = released {
             touch.interval.end_s = Some(time_s);
             touch.interval.separation_speed_m_s = Some(-rate);
         }
         self.statistics.intervals += 1;
-        self.statistics.largest_force_n = self.statistics.largest_force_n.max(touch.interval.peak_force_n);
+        self.statistics.largest_force_n = self.statistics.largest_force_n.max(peak_force_n);
         Some(touch.interval)
     }
 }

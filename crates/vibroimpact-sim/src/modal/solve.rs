@@ -327,6 +327,7 @@ impl Solver {
             stop_at_rest: true,
             stop_when_over: true,
             rest_from_s: if keep == Keep::Result { 0.0 } else { settings.until_s },
+            statistics_from_s: 0.0,
         };
         let mut watch = Watch(Vec::new());
         let tables = self.tables(system);

@@ -33,6 +33,7 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("accelerations_m_s2[]", "a finite number"),
     ("static_start", "true or false"),
     ("end_s", "a number greater than 0 and not greater than 1e12"),
+    ("statistics_from_s", "a number not less than 0 and less than end_s"),
     ("position_m", "a finite number"),
     ("gravity_participation_kg0_5", "a list of finite numbers, one a mode"),
     ("gravity_participation_kg0_5[]", "a finite number"),

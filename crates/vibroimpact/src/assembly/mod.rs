@@ -12,6 +12,7 @@
 //! | `ground_motion` | a motion of the ground: [`GroundMotion`] |
 //! | `static_start` | whether elastic modes start at their deflection under the constant loads; default `false` |
 //! | `end_s` | time at which the run ends |
+//! | `statistics_from_s` | time from which statistics of the contacts are taken; default 0 |
 //! | `tolerance` | requested accuracy of the impulses; default 1e-9 |
 //!
 //! Bodies start undeformed and at rest unless the scene states another start.
@@ -149,6 +150,9 @@ pub struct AssemblyScene {
     pub static_start: bool,
     /// Time at which the run ends (s).
     pub end_s: f64,
+    /// Time from which statistics of the contacts are taken (s), before `end_s`, as after a transient motion; 0 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statistics_from_s: Option<f64>,
     /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far, 1e-13 to 0.1;
     /// 1e-9 when left out.
     #[schemars(range(min = 1e-13, max = 0.1))]
@@ -174,6 +178,7 @@ struct Outline {
     #[serde(default)]
     static_start: bool,
     end_s: f64,
+    statistics_from_s: Option<f64>,
     tolerance: Option<f64>,
 }
 
@@ -219,6 +224,7 @@ impl AssemblyScene {
             ground_motion: motion.map_err(|fault| fault.within("ground_motion"))?,
             static_start: outline.static_start,
             end_s: outline.end_s,
+            statistics_from_s: outline.statistics_from_s,
             tolerance: outline.tolerance,
         })
     }

@@ -124,7 +124,7 @@ fn spectrum(found: &Simulation, course: &Course, contacts: &[usize]) -> Panel {
         let modes = crate::text::counted(samples.fast_modes as u64, "mode", "modes");
         title += &format!(" without {modes} above {highest}");
     }
-    let most = contacts.iter().map(|&c| found.run.contacts[c].statistics.intervals).max().unwrap_or(0);
+    let most = contacts.iter().map(|&c| found.intervals[c].len() as u64 + found.left_out[c]).max().unwrap_or(0);
     if most as f64 > found.run.end_s * samples.highest_hz() {
         title += "; contacts follow each other faster than its samples";
     }

@@ -115,6 +115,12 @@ impl AssemblyScene {
             let allowed = "a number greater than 0 and not greater than 1e12";
             return Err(InvalidInput::new("end_s", number(self.end_s), allowed));
         }
+        settings.statistics_from_s = self.statistics_from_s.unwrap_or(0.0);
+        if !(settings.statistics_from_s >= 0.0 && settings.statistics_from_s < self.end_s) {
+            let allowed = format!("a number not less than 0 and less than end_s, {}", number(self.end_s));
+            return Err(InvalidInput::new("statistics_from_s", number(settings.statistics_from_s), allowed));
+        }
+        settings.rest_from_s = settings.statistics_from_s;
         if !(1e-13..=0.1).contains(&settings.tolerance) {
             return Err(InvalidInput::new("tolerance", number(settings.tolerance), "a number from 1e-13 to 0.1"));
         }

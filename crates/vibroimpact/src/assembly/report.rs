@@ -9,6 +9,7 @@ use super::text::{
 };
 use crate::plot::Figure;
 use crate::report::{Report, literal, trusted};
+use crate::text::quantity;
 
 /// Intervals that are listed.
 const LISTED: usize = 100;
@@ -26,6 +27,9 @@ pub fn report(headline: &str, scene: &AssemblyScene, summary: &Summary, figure: 
     if let Some(reliable) = reliability(summary) {
         rows.push(vec!["touches and releases are certain until".to_owned(), reliable]);
     }
+    if summary.statistics_from_s > 0.0 {
+        rows.push(vec!["statistics from".to_owned(), quantity(summary.statistics_from_s, "s")]);
+    }
     report.table(&["result", ""], &rows);
     report.figure("run", figure, "Gaps and forces over time (grey: in contact), with their statistics.")?;
     report.heading("Contacts");
@@ -36,7 +40,7 @@ pub fn report(headline: &str, scene: &AssemblyScene, summary: &Summary, figure: 
     let listed = first_intervals(summary, LISTED);
     let rows: Vec<Vec<String>> = listed.iter().map(|(name, interval)| interval_cells(name, interval).into()).collect();
     report.table(&INTERVAL, &rows);
-    let all: u64 = summary.contacts.values().map(|contact| contact.count).sum();
+    let all = summary.interval_count();
     if all > rows.len() as u64 {
         report.text(&format!("... and {} more.", all - rows.len() as u64));
     }

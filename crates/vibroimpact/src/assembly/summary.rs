@@ -41,6 +41,8 @@ pub struct Summary {
     pub reason: Option<&'static str>,
     /// The time at which it ended (s).
     pub end_s: f64,
+    /// Start of the time that the statistics of the contacts cover (s). It is that of the scene, or 0 if the run stopped before.
+    pub statistics_from_s: f64,
     /// Time up to which touches and releases are certain to the tolerance (s), from a second run with a thousandth of the
     /// tolerance; along a chaotic motion only statistics are meaningful after it. Null if it was not computed.
     pub reliable_until_s: Option<f64>,
@@ -58,14 +60,14 @@ pub struct Summary {
     pub counts: Cost,
 }
 
-/// The results of a contact.
+/// The results of a contact. Intervals are listed for the whole run, statistics cover the time from `statistics_from_s` on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statistics {
     /// Intervals of contact in order of time.
     pub intervals: Vec<Interval>,
     /// Number of intervals that are not listed.
     pub intervals_left_out: u64,
-    /// Number of intervals.
+    /// Number of intervals that end in this time or are under way at its end.
     pub count: u64,
     /// Share of the time in contact.
     pub time_share: f64,
@@ -73,9 +75,9 @@ pub struct Statistics {
     pub impulse_n_s: f64,
     /// Largest force (N).
     pub largest_force_n: f64,
-    /// Root mean square of the force over the whole time (N).
+    /// Root mean square of the force over this time (N).
     pub rms_force_n: f64,
-    /// Work of compression over the whole time (W).
+    /// Work of compression over this time (W).
     pub contact_work_rate_w: f64,
 }
 
@@ -197,11 +199,17 @@ impl Summary {
         self
     }
 
+    /// Number of intervals of all contacts in the whole run.
+    pub(super) fn interval_count(&self) -> u64 {
+        self.contacts.values().map(|contact| contact.intervals.len() as u64 + contact.intervals_left_out).sum()
+    }
+
     /// Collects a result for printing.
     pub fn new(found: &Simulation) -> Summary {
         let run = &found.run;
         let end_s = run.end_s;
-        let per_time = |value: f64| if end_s > 0.0 { value / end_s } else { 0.0 };
+        let covered_s = end_s - run.statistics_from_s;
+        let per_time = |value: f64| if covered_s > 0.0 { value / covered_s } else { 0.0 };
         let contact = |(c, name): (usize, &String)| {
             let statistics = &run.contacts[c].statistics;
             let contact = Statistics {
@@ -234,6 +242,7 @@ impl Summary {
                 _ => None,
             },
             end_s,
+            statistics_from_s: run.statistics_from_s,
             reliable_until_s: found.reliable_until_s,
             steady_motion: found.steady,
             contacts: names.iter().enumerate().map(contact).collect(),

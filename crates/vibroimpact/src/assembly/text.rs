@@ -142,6 +142,9 @@ pub fn result(summary: &Summary) -> String {
     if let Some(reliable) = reliability(summary) {
         line("events certain until", reliable);
     }
+    if summary.statistics_from_s > 0.0 {
+        line("statistics from", format!("{} on", quantity(summary.statistics_from_s, "s")));
+    }
     if let Some(SteadyMotion { periods, intervals }) = summary.steady_motion {
         let intervals = counted(intervals, "interval", "intervals");
         let periods = if periods == 1 { "each period".to_owned() } else { format!("{periods} periods") };
@@ -157,7 +160,7 @@ pub fn result(summary: &Summary) -> String {
         }
     }
     let listed = first_intervals(summary, LISTED);
-    let all: u64 = summary.contacts.values().map(|contact| contact.count).sum();
+    let all = summary.interval_count();
     if !listed.is_empty() {
         text += &columns(&INTERVAL, listed.iter().map(|(name, interval)| interval_cells(name, interval).to_vec()));
     }

@@ -163,6 +163,7 @@ pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
         "poissons_ratio" | "striker_poissons_ratio" => Some((Excluded(-1.0), Included(0.5))),
         "shear_coefficient" => Some((Excluded(0.0), Included(2.0))),
         "inclination_deg" => Some((Included(0.0), Included(90.0))),
+        "statistics_from_s" => Some((Included(0.0), Excluded(1e12))),
         "end_s" => Some((Excluded(0.0), Included(1e12))),
         _ => allowed(name).and_then(of_text),
     }

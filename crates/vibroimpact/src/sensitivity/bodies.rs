@@ -122,7 +122,7 @@ fn differentiate(base: &Posed, around: &[&Neighbours<Posed>]) -> Result<Differen
     }
     let in_scene = |fault| base.in_scene(fault);
     let solver = Solver::new(&base.assembly).map_err(in_scene)?;
-    let settings = Settings { max_steps: MOST_PANELS, ..base.settings };
+    let settings = Settings { max_steps: MOST_PANELS, statistics_from_s: 0.0, ..base.settings };
     let found = solver.differentiate(&settings, &parameters).map_err(in_scene)?;
     if found.run.outcome == Outcome::Stopped(vibroimpact_sim::assembly::Reason::Steps) {
         let allowed = format!("a time that a run of {MOST_PANELS} panels reaches: it is kept whole. Shorten end_s");
