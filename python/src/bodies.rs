@@ -79,7 +79,8 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 /// Find the periodic motion of a scene of bodies under a harmonic load, or follow a branch of them over a field.
 ///
 /// After `transient` periods of the load from the scene's start, Newton's method finds a motion with a period of `periods` of
-/// them. Returns the object that `vibroimpact orbit --json` prints, with `points` as a structured array and
+/// them. If it fails, the motion is followed for `search` more periods, and Newton's method begins where it nearly repeats itself.
+/// Returns the object that `vibroimpact orbit --json` prints, with `points` as a structured array and
 /// `floquet_multipliers` as a complex one.
 ///
 /// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value in the
@@ -90,20 +91,26 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 /// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends the search with the exception `Interrupted`,
 /// a `KeyboardInterrupt` whose `result` is the result so far.
 #[pyfunction]
-#[pyo3(signature = (scene, *, periods = 1, transient = 100, over = None, from_ = None, to = None, step = 0.02, doublings = 0))]
+#[pyo3(signature = (scene, *, periods = 1, transient = 100, search = 1500, over = None, from_ = None, to = None, step = 0.02, doublings = 0))]
 #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
 pub fn orbit(
     py: Python<'_>,
     scene: Source,
     periods: u32,
     transient: u32,
+    search: u32,
     over: Option<String>,
     from_: Option<f64>,
     to: Option<f64>,
     step: f64,
     doublings: u32,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let settings = OrbitSettings { forcing_periods: periods, transient_periods: transient, ..OrbitSettings::default() };
+    let settings = OrbitSettings {
+        forcing_periods: periods,
+        transient_periods: transient,
+        search_periods: search,
+        ..OrbitSettings::default()
+    };
     let Some(field) = over else {
         let (found, signals) = py.detach(|| {
             until_signal(|stop| {

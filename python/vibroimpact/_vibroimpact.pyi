@@ -42,6 +42,7 @@ def orbit(
     *,
     periods: int = 1,
     transient: int = 100,
+    search: int = 1500,
     over: str | None = None,
     from_: float | None = None,
     to: float | None = None,

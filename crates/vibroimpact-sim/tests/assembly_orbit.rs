@@ -152,6 +152,31 @@ fn a_ball_on_a_shaken_table_loses_its_stability_at_the_closed_forms_threshold() 
     }
 }
 
+/// Above the threshold the ball converges to a motion of two periods. A search for three that is not given enough iterations says so.
+#[test]
+fn a_search_in_vain_tells_after_how_many_periods_the_motion_repeats_itself() {
+    let assembly = shaken(1.1, 0.8);
+    let settings = OrbitSettings { forcing_periods: 3, max_iterations: 1, search_periods: 400, ..Default::default() };
+    let OrbitOutcome::NotFound { closure, recurrence: Some(recurrence) } = find_orbit(&assembly, &settings).unwrap()
+    else {
+        panic!()
+    };
+    assert!(closure > 1e-9);
+    assert_eq!((recurrence.forcing_periods, recurrence.has_converged), (2, true), "{recurrence:?}");
+    assert!(recurrence.separation_per_period < 1.0 && recurrence.distance < 1e-4, "{recurrence:?}");
+}
+
+/// Far above it the motion is chaotic, and nearby motions separate at the rate at which the distance of two runs grows.
+#[test]
+fn nearby_motions_of_a_chaotic_motion_separate() {
+    let assembly = shaken(2.5, 0.8);
+    let settings = OrbitSettings { forcing_periods: 7, max_iterations: 1, search_periods: 200, ..Default::default() };
+    let OrbitOutcome::NotFound { recurrence: Some(recurrence), .. } = find_orbit(&assembly, &settings).unwrap() else {
+        panic!()
+    };
+    assert!(!recurrence.has_converged && recurrence.separation_per_period > 1.1, "{recurrence:?}");
+}
+
 #[derive(Default)]
 struct Starts(Vec<f64>);
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::gallery::datasets;
 use crate::program::{run, stdout};
 use serde_json::Value;
 
@@ -50,6 +51,25 @@ fn the_steady_motion_is_found_with_its_multipliers() {
     }
     let text = stdout(&run(folder.path(), &["orbit", &scene]));
     assert!(text.contains("stable") && text.contains("Floquet multipliers"), "{text}");
+}
+
+/// The damper's motion is irregular for a thousand periods before it converges to one of four periods. The masses of the second
+/// scene lose no energy, so that no transient converges.
+#[test]
+fn near_returns_of_a_long_motion_lead_to_periodic_ones() {
+    for (name, periods, stable) in [("impact-damper", "4", true), ("sdnd125", "1", true)] {
+        let scene = datasets(&format!("assemblies/{name}.json")).display().to_string();
+        let found: Value =
+            serde_json::from_str(&stdout(&run(Path::new("."), &["orbit", &scene, "--periods", periods, "--json"])))
+                .unwrap();
+        assert_eq!(found["outcome"], "found", "{name}");
+        assert_eq!(found["stable"], stable, "{name}");
+        assert!(found["closure"].as_f64().unwrap() < 1e-9);
+        // Without a search, the transient leads to none.
+        let arguments = ["orbit", &scene, "--periods", periods, "--search", "0", "--json"];
+        let found: Value = serde_json::from_str(&stdout(&run(Path::new("."), &arguments))).unwrap();
+        assert_eq!(found["outcome"], "not found", "{name}");
+    }
 }
 
 #[test]

@@ -74,6 +74,7 @@ mod record;
 mod reliability;
 pub(crate) mod responses;
 mod rest;
+mod search;
 mod solution;
 pub(crate) mod solve;
 mod state;
@@ -91,9 +92,10 @@ pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, fol
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
 pub use miss::NearMiss;
 pub use no_derivative::NoDerivative;
-pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, find_orbit_until};
+pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, Recurrence, SideMotion};
 pub use period::CommonPeriod;
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
+pub use search::{find_orbit, find_orbit_until};
 pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,
 };

@@ -27,6 +27,9 @@ const SAMPLES: usize = 1024;
 const SAMPLES_OF_CYCLE: usize = 64;
 /// Bisections that locate a turning point. The error of its displacement is the square of that of its time.
 const TURNING_HALVINGS: u32 = 24;
+/// Newton's method is given up after this many iterations in a row that hardly reduce the distance, by less than this factor.
+const STALLED: u32 = 5;
+const HARDLY: f64 = 0.9;
 /// A motion counts as unstable if a multiplier exceeds 1 by more than this, which is the accuracy at grazing contacts.
 const MARGINAL: f64 = 1e-6;
 
@@ -37,6 +40,8 @@ pub struct OrbitSettings {
     pub forcing_periods: u32,
     /// Periods that are followed from the start before Newton's method. Default 100.
     pub transient_periods: u32,
+    /// Periods that are followed in search of near returns if Newton's method fails after the transient. Default 1500.
+    pub search_periods: u32,
     /// Tolerance of the runs, see [`Settings::tolerance`]. Default 1e-11.
     pub tolerance: f64,
     /// Largest difference `|P(x) - x|` of a periodic motion, relative to its size. Default 1e-9.
@@ -50,6 +55,7 @@ impl Default for OrbitSettings {
         OrbitSettings {
             forcing_periods: 1,
             transient_periods: 100,
+            search_periods: 1500,
             tolerance: 1e-11,
             closure: 1e-9,
             max_iterations: 30,
@@ -104,6 +110,19 @@ pub struct Orbit {
     pub iterations: u32,
 }
 
+/// How nearly the motion from the start repeats itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recurrence {
+    /// Periods of the loads after which it is nearest to an earlier state, up to 16.
+    pub forcing_periods: u32,
+    /// The distance from that state, relative to the size of the motion.
+    pub distance: f64,
+    /// Whether it repeats itself after so many periods from then on: it has converged to a periodic motion.
+    pub has_converged: bool,
+    /// Factor by which nearby motions separate in a period of the loads, on average. Above 1 the motion is chaotic.
+    pub separation_per_period: f64,
+}
+
 /// Outcome of the search for a periodic motion.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -114,6 +133,8 @@ pub enum OrbitOutcome {
     NotFound {
         /// `|P(x) - x|`, relative to the size of the motion.
         closure: f64,
+        /// The returns of the motion from the start, if it was followed in search of them.
+        recurrence: Option<Recurrence>,
     },
     /// A run of a period stopped before its end.
     Stopped(Outcome),
@@ -130,41 +151,12 @@ impl fmt::Display for OrbitOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             OrbitOutcome::Found(orbit) => write!(f, "found: a period of {} s", orbit.period_s),
-            OrbitOutcome::NotFound { closure } => {
+            OrbitOutcome::NotFound { closure, .. } => {
                 write!(f, "not found: the motion repeats itself to {closure:e} at best")
             }
             OrbitOutcome::Stopped(outcome) => write!(f, "a period did not end: {outcome}"),
             OrbitOutcome::Interrupted { closure, .. } => write!(f, "interrupted at a closure of {closure:e}"),
         }
-    }
-}
-
-/// Finds a periodic motion near where a transient from the assembly's start leads.
-///
-/// # Errors
-/// If the input is invalid, or if there is no harmonic load, or several whose frequencies are not multiples of one frequency.
-pub fn find_orbit<L: ContactLaw + Clone>(
-    assembly: &Assembly<L>,
-    settings: &OrbitSettings,
-) -> Result<OrbitOutcome, InvalidInput> {
-    find_orbit_until(assembly, settings, &|| false)
-}
-
-/// As [`find_orbit`]; `stop` is called from time to time, and ends the search with its best result so far.
-///
-/// # Errors
-/// As [`find_orbit`].
-pub fn find_orbit_until<L: ContactLaw + Clone>(
-    assembly: &Assembly<L>,
-    settings: &OrbitSettings,
-    stop: &dyn Fn() -> bool,
-) -> Result<OrbitOutcome, InvalidInput> {
-    settings.check()?;
-    let mut map = PeriodMap::new(assembly.clone(), settings, stop)?;
-    let transient = map.transient(settings.transient_periods)?;
-    match transient {
-        Ok(state) => refine(&map, state, settings),
-        Err(outcome) => Ok(OrbitOutcome::Stopped(outcome)),
     }
 }
 
@@ -178,7 +170,7 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
         Ok(image) => image,
         Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
     };
-    let mut iterations = 0;
+    let (mut iterations, mut stalled, mut before) = (0, 0, f64::INFINITY);
     loop {
         let scales = map.scales(&state, &image);
         let closure = map.distance(&(&image - &state), &scales);
@@ -194,13 +186,15 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
         if closure <= settings.closure {
             return map.describe(state, closure, &jacobian, iterations);
         }
-        if iterations == settings.max_iterations {
-            return Ok(OrbitOutcome::NotFound { closure });
+        stalled = if closure > HARDLY * before { stalled + 1 } else { 0 };
+        before = closure;
+        if iterations == settings.max_iterations || stalled == STALLED {
+            return Ok(OrbitOutcome::NotFound { closure, recurrence: None });
         }
         iterations += 1;
         let matrix = &jacobian - DMatrix::identity(state.len(), state.len());
         let Some(step) = matrix.lu().solve(&(&state - &image)) else {
-            return Ok(OrbitOutcome::NotFound { closure });
+            return Ok(OrbitOutcome::NotFound { closure, recurrence: None });
         };
         // a full step, or a shorter one that reduces the distance
         let mut part = 1.0;
@@ -221,7 +215,7 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
         };
         match next {
             Some((trial, after)) => (state, image) = (trial, after),
-            None => return Ok(OrbitOutcome::NotFound { closure }),
+            None => return Ok(OrbitOutcome::NotFound { closure, recurrence: None }),
         }
     }
 }
@@ -238,7 +232,7 @@ pub(crate) struct PeriodMap<'s, L> {
     phase_s: f64,
 }
 
-type Reached<T> = Result<Result<T, Outcome>, InvalidInput>;
+pub(super) type Reached<T> = Result<Result<T, Outcome>, InvalidInput>;
 
 impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
     pub fn new(
@@ -297,7 +291,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         DVector::from_vec(values.collect())
     }
 
-    fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
+    pub fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
         let settings = Settings { end_s, ..self.settings };
         let found = run(&self.posed(state), &settings, &mut Stoppable { stop: self.stop, observer })?;
         Ok(match found.outcome {
@@ -318,9 +312,8 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         Self::state_of(&of(|body| &body.amplitude), &of(|body| &body.rate))
     }
 
-    /// Follows the start for some periods and moves the phase to the middle of the longest time without contact.
-    fn transient(&mut self, periods: u32) -> Reached<DVector<f64>> {
-        let mut state = self.start();
+    /// Follows a state for some periods and moves the phase to the middle of the longest time without contact.
+    pub fn transient(&mut self, mut state: DVector<f64>, periods: u32) -> Reached<DVector<f64>> {
         if periods > 0 {
             let span = f64::from(periods) * self.forcing_period_s;
             match self.follow(&state, span, &mut ())? {

@@ -24,7 +24,8 @@ pub const EXAMPLES: &str = "Examples:
                                                  also the motions of two and of four periods that begin on the way
 
 The scene is one of bodies with a harmonic load, or with several that have a common period. After a transient from its
-start, Newton's method finds the periodic motion; its Floquet multipliers show whether it is stable. Over a field (a
+start, Newton's method finds the periodic motion; its Floquet multipliers show whether it is stable. If it fails, the
+motion is followed for many more periods (--search), and Newton's method begins where it nearly repeats itself. Over a field (a
 path as in a sweep) the branch is followed round its folds, and folds, period doublings, Neimark-Sacker points and
 grazings are located. With --doublings the motions of twice the period that begin at period doublings are followed
 too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends the search and prints the
@@ -43,6 +44,9 @@ pub struct Arguments {
     /// Periods of the load that are followed from the start before the search
     #[arg(long, value_name = "N", default_value_t = 100)]
     transient: u32,
+    /// Periods of the load that are followed in search of near returns if the transient leads to no periodic motion
+    #[arg(long, value_name = "N", default_value_t = 1500, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    search: u32,
     /// Follow the branch over this field of the scene
     #[arg(long, value_name = "FIELD", requires = "to")]
     over: Option<String>,
@@ -78,6 +82,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let settings = OrbitSettings {
         forcing_periods: arguments.periods,
         transient_periods: arguments.transient,
+        search_periods: arguments.search,
         ..OrbitSettings::default()
     };
     let stop = stop_on_signal()?;

@@ -20,7 +20,8 @@ use crate::scene::FieldPath;
 pub use picture::picture;
 use summary::INTERRUPTED;
 pub use summary::{
-    BranchOrbit, BranchPart, BranchSummary, DoubledBranch, Found, OrbitSummary, Over, PointMotion, SpecialPoint,
+    BranchOrbit, BranchPart, BranchSummary, DoubledBranch, Found, OrbitSummary, Over, PointMotion, Recurrence,
+    SpecialPoint,
 };
 pub use text::text;
 
@@ -41,13 +42,14 @@ impl AssemblyScene {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
         let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| posed.in_scene(fault))?;
-        let none = Found { outcome: INTERRUPTED, reason: None, orbit: None, nearest_closure: None };
+        let none = Found { outcome: INTERRUPTED, reason: None, orbit: None, nearest_closure: None, recurrence: None };
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
                 Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), ..none }
             }
-            OrbitOutcome::NotFound { closure } => {
-                Found { outcome: "not found", nearest_closure: Some(closure), ..none }
+            OrbitOutcome::NotFound { closure, recurrence } => {
+                let recurrence = recurrence.as_ref().map(Recurrence::new);
+                Found { outcome: "not found", nearest_closure: Some(closure), recurrence, ..none }
             }
             OrbitOutcome::Interrupted { closure, .. } => Found { nearest_closure: Some(closure), ..none },
             OrbitOutcome::Stopped(Outcome::Stopped(Reason::Interrupted)) => none,

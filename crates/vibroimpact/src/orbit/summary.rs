@@ -1,6 +1,7 @@
 //! Results of periodic motions and their branches.
 
 use serde::Serialize;
+use vibroimpact_sim::assembly;
 
 use crate::assembly::AssemblyScene;
 use crate::export::Failure;
@@ -59,6 +60,29 @@ pub struct Found {
     /// Smallest distance from a periodic motion if it was not found, relative to the size of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_closure: Option<f64>,
+    /// How nearly the motion from the start repeats itself, if it was followed in search of a periodic motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recurrence: Option<Recurrence>,
+}
+
+/// How nearly the motion from the start repeats itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Recurrence {
+    /// Periods of the loads after which it is nearest to an earlier state, up to 16.
+    pub forcing_periods: u32,
+    /// The distance from that state, relative to the size of the motion.
+    pub distance: f64,
+    /// Whether it repeats itself after so many periods from then on.
+    pub has_converged: bool,
+    /// Factor by which nearby motions separate in a period of the loads.
+    pub separation_per_period: f64,
+}
+
+impl Recurrence {
+    pub(super) fn new(found: &assembly::Recurrence) -> Recurrence {
+        let assembly::Recurrence { forcing_periods, distance, has_converged, separation_per_period } = *found;
+        Recurrence { forcing_periods, distance, has_converged, separation_per_period }
+    }
 }
 
 /// The outcome of an interrupted search.

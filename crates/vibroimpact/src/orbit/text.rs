@@ -4,8 +4,11 @@ use std::fmt::Write;
 
 use vibroimpact_sim::assembly::Special;
 
-use super::summary::{BranchPart, BranchSummary, Found, INTERRUPTED, OrbitSummary};
+use super::summary::{BranchPart, BranchSummary, Found, INTERRUPTED, OrbitSummary, Recurrence};
 use crate::text::{counted, quantity};
+
+/// Factor by which nearby motions of a chaotic motion separate in each period, beyond the error of the estimate.
+const CHAOTIC: f64 = 1.02;
 
 /// A periodic motion, or the reason why there is none.
 pub fn text(found: &Found) -> String {
@@ -17,15 +20,45 @@ pub fn text(found: &Found) -> String {
         (None, None) if found.outcome == INTERRUPTED => {
             "  outcome               interrupted before the search began: during the transient.\n".to_owned()
         }
-        (None, Some(closure)) => format!(
-            "  outcome               not found: the motion repeats itself only to {closure:.1e} of its size.\n  \
-             A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n"
-        ),
+        (None, Some(closure)) => {
+            let advice = found.recurrence.as_ref().map_or_else(|| ADVICE.to_owned(), advice);
+            format!(
+                "  outcome               not found: the motion repeats itself only to {closure:.1e} of its size.\n{advice}"
+            )
+        }
         (None, None) => {
             let reason = found.reason.map_or_else(String::new, |reason| format!(" ({reason})"));
             format!("  outcome               stopped: a run over one period did not reach its end{reason}.\n")
         }
     }
+}
+
+const ADVICE: &str = "  A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n";
+
+/// What the motion from the start does instead, and how a periodic motion may be found.
+fn advice(recurrence: &Recurrence) -> String {
+    let Recurrence { forcing_periods: n, distance, has_converged, separation_per_period } = *recurrence;
+    if has_converged {
+        return format!(
+            "  The motion from the start converges to one that repeats itself after {n} periods of the load: --periods {n}.\n"
+        );
+    }
+    let nature = if separation_per_period > CHAOTIC {
+        format!(
+            "It is chaotic: nearby motions separate by a factor of {separation_per_period:.2} in each period of the load."
+        )
+    } else {
+        format!(
+            "It is not chaotic: nearby motions separate by a factor of only {separation_per_period:.4} in each period of the load. \
+             It may be\n  quasi-periodic, or converge slowly."
+        )
+    };
+    let periods = counted(u64::from(n), "period", "periods");
+    format!(
+        "  The motion from the start converges to no periodic motion; it is nearest to one after {periods}, to {distance:.1e}.\n  \
+         {nature}\n  \
+         A longer search (--search), other --periods, or a branch (--over) that begins where a motion is stable may lead to one.\n"
+    )
 }
 
 fn orbit_text(orbit: &OrbitSummary) -> String {
