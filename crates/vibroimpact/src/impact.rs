@@ -6,7 +6,7 @@ use vibroimpact_sim::modal::{History, Mode, Posing, Recording, Settings, Solutio
 
 use crate::in_scene::in_scene;
 use crate::model::Kept;
-use crate::same_modes::{Seen, matched};
+use crate::same_modes::{Match, Seen, matched};
 use crate::scene::json::number;
 use crate::scene::{
     self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, require_elastic,
@@ -107,13 +107,14 @@ impl Impact {
     /// The reason why they are not the same modes.
     pub(crate) fn take_modes_of(&mut self, base: &Impact) -> Result<(), &'static str> {
         let steps = matched(&base.seen(), self.seen())?;
-        for (k, (i, sign)) in steps.into_iter().enumerate() {
+        for (k, Match { from, sign, omega_rad_s }) in steps.into_iter().enumerate() {
             let modes = &mut self.structure.modes;
-            modes.swap(k, i);
+            modes.swap(k, from);
             modes[k].shape *= sign;
+            modes[k].omega_rad_s = omega_rad_s.unwrap_or(modes[k].omega_rad_s);
             if let Some(start) = &mut self.start {
                 for values in [&mut start.amplitude, &mut start.rate] {
-                    values.swap(k, i);
+                    values.swap(k, from);
                     values[k] *= sign;
                 }
             }

@@ -7,6 +7,20 @@
 /// Largest relative change of a mode from a structure to its neighbour; beyond it they count as different modes.
 const SAME: f64 = 1e-2;
 
+/// A mode that moves the points here by less than this share of its motion at the neighbour does not move them here.
+const UNSEEN: f64 = 1e-8;
+
+/// The mode of a neighbour that is the same as one here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Match {
+    /// The position of the mode, which is to be swapped into that of the mode here.
+    pub from: usize,
+    /// Its sign.
+    pub sign: f64,
+    /// The frequency that replaces its own (rad/s).
+    pub omega_rad_s: Option<f64>,
+}
+
 /// The compared data of a mode.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Seen {
@@ -19,12 +33,16 @@ pub(crate) struct Seen {
 impl Seen {
     /// The difference of another mode from this one, and the sign with which it is the same mode: the opposite sign only if it is
     /// not the same mode with its own. If the frequency has not changed, the structure has not, but only the point where it is
-    /// seen: at a support, where no mode moves, the shapes tell nothing.
+    /// seen: at a support, where no mode moves, the shapes tell nothing. A mode that does not move the points here has no definite
+    /// frequency if it is a remainder mode.
     fn compared(&self, other: &Seen, largest: f64) -> (f64, f64) {
         if self.omega_rad_s == other.omega_rad_s && self.omega_rad_s > 0.0 {
             return (0.0, 1.0);
         }
         let by_frequency = (self.omega_rad_s - other.omega_rad_s).abs() / self.omega_rad_s.max(f64::MIN_POSITIVE);
+        if self.is_unseen_beside(other) {
+            return (by_frequency.min(SAME), 1.0);
+        }
         let distance = |sign: f64| {
             let by_shape = self.shapes.iter().zip(&other.shapes).map(|(one, other)| (one - sign * other).abs());
             by_shape.fold(0.0, f64::max) / largest
@@ -35,11 +53,26 @@ impl Seen {
     }
 }
 
-/// For each mode in turn: the position of the matching mode, which is to be swapped into its own, and the sign.
+impl Seen {
+    fn is_unseen_beside(&self, other: &Seen) -> bool {
+        let largest = |mode: &Seen| mode.shapes.iter().fold(0.0f64, |most, shape| most.max(shape.abs()));
+        largest(self) <= UNSEEN * largest(other)
+    }
+
+    /// The frequency here, if it may replace that of the same mode at a neighbour. At a support no remainder mode is excited, and its
+    /// frequency is arbitrary. The effect of a mode grows with the square of its shape, so that its frequency has none on derivatives
+    /// there.
+    fn replaces(&self, other: &Seen) -> Option<f64> {
+        let differs = (self.omega_rad_s - other.omega_rad_s).abs() > SAME * self.omega_rad_s;
+        (differs && self.is_unseen_beside(other)).then_some(self.omega_rad_s)
+    }
+}
+
+/// For each mode in turn the matching mode of the neighbour.
 ///
 /// # Errors
 /// The reason why they are not the same modes.
-pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<(usize, f64)>, &'static str> {
+pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<Match>, &'static str> {
     if own.len() != found.len() {
         return Err("the number of modes that the contact moves changes");
     }
@@ -58,7 +91,8 @@ pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<(usize, 
             return Err(if elsewhere { "two modes swap their order" } else { "a mode changes abruptly" });
         }
         found.swap(k, i);
-        steps.push((i, mode.compared(&found[k], largest).1));
+        let sign = mode.compared(&found[k], largest).1;
+        steps.push(Match { from: i, sign, omega_rad_s: mode.replaces(&found[k]) });
     }
     Ok(steps)
 }

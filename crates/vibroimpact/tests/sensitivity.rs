@@ -288,7 +288,6 @@ fn fields_without_a_derivative_are_named() {
         ("../assemblies/shaken-table.json", &["--of", "restitution"], "an output of this scene"),
         ("../assemblies/shaken-table.json", &["--by=end_s", "--set=end_s=1e5"], "panels"),
         ("infinite-beam.json", &["--of", "restitution"], "a structure with modes"),
-        ("pinned-beam-converged.json", &["--set=location_m=0", "--by=location_m"], "a mode changes abruptly"),
         ("../assemblies/newtons-cradle.json", &["--by", "contacts[1].gap_m"], "touches without speed"),
     ] {
         let message = refused(scene, more);
@@ -406,4 +405,42 @@ fn net_laws_have_derivatives_too() {
     };
     let reference = (at(radius + 1e-6) - at(radius - 1e-6)) / 2e-6;
     assert!((derivative.value - reference).abs() < 1e-6 * reference.abs(), "{derivative:?} {reference}");
+}
+
+/// At a pinned end no mode moves. The restitution falls with the square of the distance from it, and its derivative vanishes, as the
+/// limit of those at interior locations; remainder modes have arbitrary frequencies there.
+#[test]
+fn the_derivative_by_the_location_vanishes_on_a_pinned_end() {
+    for (end, inside) in [(0.0, 1e-4), (1.0, 1.0 - 1e-4)] {
+        let at = |location: f64| {
+            let tree = changed("pinned-beam-converged.json", |tree| tree["location_m"] = json!(location));
+            let scene = Scene::from_value(&tree).unwrap();
+            let found = scene.sensitivity(&["location_m".to_owned()]).unwrap();
+            assert!(found.remainder_modes > 0);
+            found.of("restitution", "location_m").unwrap()
+        };
+        let (there, beside) = (at(end), at(inside));
+        assert!(there.value.abs() < 1e-6 && there.uncertainty.is_some_and(|by| by < 1e-6), "{there:?}");
+        assert!((0.1..10.0).contains(&beside.value.abs()), "{beside:?}");
+    }
+}
+
+/// With a smaller gap the surfaces of the stop would overlap at the start.
+#[test]
+fn derivatives_at_a_touch_at_the_start_hold_on_one_side() {
+    let scene = "../assemblies/sdnd101.json";
+    let arguments = |json: &[&'static str]| {
+        let path = gallery(scene).display().to_string();
+        let fixed = ["sensitivity".to_owned(), path, "--by".to_owned(), "contacts[0].gap_m,end_s".to_owned()];
+        fixed.into_iter().chain(json.iter().map(|word| (*word).to_owned())).collect::<Vec<String>>()
+    };
+    let output = |arguments: &[String]| {
+        stdout(&run(std::path::Path::new("."), &arguments.iter().map(String::as_str).collect::<Vec<_>>()))
+    };
+    let found: Value = serde_json::from_str(&output(&arguments(&["--json"]))).unwrap();
+    assert_eq!(
+        (&found["fields"][0]["holds_for"], &found["fields"][1]["holds_for"]),
+        (&json!("increase"), &json!(null))
+    );
+    assert!(output(&arguments(&[])).contains("Derivatives by contacts[0].gap_m hold for an increase of it"));
 }

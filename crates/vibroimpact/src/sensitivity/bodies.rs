@@ -14,7 +14,7 @@ use super::neighbours::{Neighbours, Posing, around};
 use super::refusal::Refusal;
 use super::table::{Miss, Output, Table};
 use crate::assembly::{AssemblyScene, Posed};
-use crate::same_modes::{Seen, matched};
+use crate::same_modes::{Match, Seen, matched};
 use crate::scene::{InvalidInput, versioned_tree};
 
 /// A run is held in memory while it is differentiated; a run with more panels is rejected.
@@ -214,12 +214,13 @@ fn seen(assembly: &Assembly<Law>) -> Vec<Vec<Seen>> {
 /// Gives the modes the signs and the order of those of a neighbouring assembly.
 fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> Result<(), &'static str> {
     for (body, (own, found)) in seen(base).into_iter().zip(seen(near)).enumerate() {
-        for (k, (i, sign)) in matched(&own, found)?.into_iter().enumerate() {
+        for (k, Match { from, sign, omega_rad_s }) in matched(&own, found)?.into_iter().enumerate() {
             let Assembly { bodies, contacts, loads } = &mut *near;
             let Body { modes, amplitude, rate } = &mut bodies[body];
-            modes.swap(k, i);
+            modes.swap(k, from);
+            modes[k].omega_rad_s = omega_rad_s.unwrap_or(modes[k].omega_rad_s);
             for values in [amplitude, rate].into_iter().chain(shapes(contacts, loads, body)) {
-                values.swap(k, i);
+                values.swap(k, from);
                 values[k] *= sign;
             }
         }

@@ -21,7 +21,7 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
     let around = around((&tree, fields), &Posing { pose: &pose, sort: &|_| Ok(()) })?;
     let mut table = Table::new(around.left_out);
     for near in &around.near {
-        table.add(&near.field, near.value, [output("restitution", near, value, |at| *at)]);
+        table.add(&near.field, near.value, vec![output("restitution", near, value, |at| *at)]);
     }
     Ok(Sensitivity {
         restitution: value,

@@ -34,7 +34,7 @@ pub(super) fn collect<T, D>(
                     let effects: Vec<Option<f64>> = draws.iter().map(effect).collect();
                     Output { derivative: modes.widened(i, output.derivative, &effects), ..output }
                 });
-                table.add(&near.field, near.value, widened.chain(modal(i)));
+                table.add(&near.field, near.value, widened.chain(modal(i)).collect());
             }
             Err(why) if around.named => return Err(refusal(*why).error(Some(&near.field))),
             Err(why) => table.leave_out(&near.field, refusal(*why).happens),

@@ -45,6 +45,24 @@ pub struct Field {
     pub path: String,
     /// Its value in the scene.
     pub value: f64,
+    /// `increase` or `decrease`, if the derivatives hold for such a change alone, or `neither`; null if they hold for both. A contact
+    /// that touches at the start can only touch later: otherwise its surfaces would overlap at the start.
+    pub holds_for: Option<&'static str>,
+}
+
+/// For which changes of a field a contact that touches at the start touches later.
+fn holds_for(derivatives: &[Output]) -> Option<&'static str> {
+    let at_start = |output: &&Output| output.value == 0.0 && output.name.ends_with("[0].start_s");
+    let later = |output: &Output| {
+        let Derivative { value, uncertainty } = output.derivative;
+        if value.abs() <= uncertainty.unwrap_or(0.0) { 0.0 } else { value.signum() }
+    };
+    let all: Vec<f64> = derivatives.iter().filter(at_start).map(later).filter(|sign| *sign != 0.0).collect();
+    match *all.first()? {
+        first if all.iter().any(|sign| *sign != first) => Some("neither"),
+        first if first > 0.0 => Some("increase"),
+        _ => Some("decrease"),
+    }
 }
 
 /// Numbers of the scene without derivatives.
@@ -76,8 +94,8 @@ impl Table {
     }
 
     /// Adds a field with the derivatives of these outputs, each with its name and its value.
-    pub(super) fn add(&mut self, path: &str, value: f64, derivatives: impl IntoIterator<Item = Output>) {
-        self.fields.push(Field { path: path.to_owned(), value });
+    pub(super) fn add(&mut self, path: &str, value: f64, derivatives: Vec<Output>) {
+        self.fields.push(Field { path: path.to_owned(), value, holds_for: holds_for(&derivatives) });
         derivatives.into_iter().for_each(|output| self.insert(path, output));
     }
 

@@ -6,7 +6,7 @@ use invalid_input::InvalidInput;
 
 use super::bodies::BodiesSensitivity;
 use super::single::Sensitivity;
-use super::table::{LeftOut, Miss, Rows, Table};
+use super::table::{Field, LeftOut, Miss, Rows, Table};
 use crate::text::{counted, significant, small};
 
 /// A touch slower than this share of the fastest is near grazing.
@@ -68,6 +68,18 @@ fn table(found: &Table, output: &str, rows: &Rows) -> String {
             text,
             "For 1 % they predict a change of {}, which is outside the range in which they hold.",
             small(ONE_PERCENT * rows.rows.first().map_or(0.0, |row| row.by_whole().abs()))
+        );
+    }
+    for Field { path, holds_for, .. } in &found.fields {
+        let change = match *holds_for {
+            None => continue,
+            Some("neither") => "no change",
+            Some("increase") => "an increase",
+            Some(_) => "a decrease",
+        };
+        let _ = writeln!(
+            text,
+            "Derivatives by {path} hold for {change} of it: otherwise surfaces that touch at the start would overlap there."
         );
     }
     if !found.left_out.is_empty() {
