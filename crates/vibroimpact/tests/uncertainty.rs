@@ -162,21 +162,18 @@ fn a_tighter_tolerance_at_the_end_of_a_list_does_not_make_the_truncated_modes_kn
     }
 }
 
-/// An undamped beam whose restitution changes as much with every further number of modes: the truth is one more such change off.
+/// An undamped beam whose restitution changes as much with every further number of modes: the truth is more than one such change off.
 #[test]
 fn changes_that_do_not_decrease_are_stated_with_caution() {
-    let segment = |length_m: f64, thickness_m: f64| {
-        json!({ "length_m": length_m, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "poissons_ratio": 0.3,
-                "width_m": 0.014887540474056615, "thickness_m": thickness_m })
-    };
-    let scene = json!({ "structure": { "kind": "beam", "theory": "timoshenko", "ends": ["pinned", "free"],
-            "segments": [segment(1.724058375962038, 0.014887540474056615), segment(0.7495605254520512, 0.009288444491247674)] },
-        "striker": { "density_kg_m3": 7800, "radius_m": 0.03316674142407844, "speed_m_s": 2.0210395429089996 },
-        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
-        "location_m": 0.9167173911172043, "tolerance": 0.01 });
+    let segment = json!({ "length_m": 0.94457, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "poissons_ratio": 0.3,
+                          "width_m": 0.0073268, "thickness_m": 0.0073268 });
+    let scene = json!({ "structure": { "kind": "beam", "theory": "timoshenko", "ends": ["guided", "pinned"], "segments": [segment] },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.028961, "speed_m_s": 0.83522 },
+        "contact": { "law": "elastoplastic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "yield_pressure_pa": 1.2e9 },
+        "location_m": 0.16584, "tolerance": 0.01 });
     let found = answer(&Scene::from_value(&scene).unwrap());
-    // with 984 to 1500 modes 0.5065 to 0.5079
-    let error = (found.restitution.unwrap() - 0.5079).abs();
+    // with 1000, 1414, 2000 and 2800 modes 0.778, 0.787, 0.805 and 0.813
+    let error = (found.restitution.unwrap() - 0.813).abs();
     assert!(!found.settled && error > 0.02 && error <= found.uncertainty.of_model().unwrap(), "{error:e} {found:?}");
 }
 
@@ -298,6 +295,74 @@ fn three_modes_of_a_stepped_beam_cover_all_of_them() {
         let error = (found.restitution.unwrap() - exact).abs();
         assert!(error <= found.restitution_uncertainty.unwrap(), "{tolerance:e}: {error:e} {found:?}");
     }
+}
+
+/// A beam that moves before the impact with 30 modes, all of which its motion may need. With 42 the restitution is nearly the same by
+/// accident; with 60 it is not.
+#[test]
+fn few_further_modes_of_a_moving_beam_do_not_agree_by_accident() {
+    let scene = json!({
+        "structure": { "kind": "beam", "ends": ["pinned", "guided"], "damping_ratio": 0.00165, "segments": [{
+            "length_m": 2.0756, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.01547, "thickness_m": 0.01547 }] },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.000777, "speed_m_s": 0.0646 },
+        "contact": { "law": "hunt-crossley", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.327 },
+        "location_m": 1.0378, "modes": 30, "residual_compliance": true, "start": { "gap_m": 6.66e-7, "moving_modes": [
+            { "mode": 2, "location_m": 0.768, "velocity_m_s": 0.01523 }] } });
+    let scene = Scene::from_value(&scene).unwrap();
+    let found = answer(&scene);
+    let error = (found.restitution.unwrap() - converged(&scene, 500, 1e-9)).abs();
+    assert!(error > 8e-5 && error <= found.restitution_uncertainty.unwrap(), "{error:e} {found:?}");
+}
+
+/// A pinned plate, most of whose modes hardly move the location: with 566 and 800 modes the restitution is nearly the same by accident,
+/// and more than the tolerance away from that of all modes. Three numbers of modes do not agree there.
+#[test]
+fn numbers_of_modes_of_a_plate_do_not_agree_by_accident() {
+    let scene = json!({
+        "structure": { "kind": "plate", "length_m": 0.16692, "width_m": 0.10676, "thickness_m": 0.002285, "youngs_modulus_pa": 2e11,
+                       "poissons_ratio": 0.3, "density_kg_m3": 7800, "edges": ["pinned", "pinned", "pinned", "pinned"],
+                       "damping_ratio": 0.0429 },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.003434, "speed_m_s": 1.1976 },
+        "contact": { "law": "hysteretic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "theta_m": 1.6, "beta": 1.4,
+                     "k_bar": 0.4, "epsilon_m": 0 },
+        "location_m": [0.13502, 0.07316], "tolerance": 1e-6 });
+    let scene = Scene::from_value(&scene).unwrap();
+    let exact = converged(&scene, 4000, 1e-9);
+    let of_modes = |count| converged(&scene, count, 1e-9) - exact;
+    assert!((of_modes(566) - of_modes(800)).abs() < 1e-7 && of_modes(800) < -1e-6);
+    let found = answer(&scene);
+    let error = (found.restitution.unwrap() - exact).abs();
+    assert!(found.settled && error < 3e-7, "{error:e} {found:?}");
+}
+
+/// A hard ball near the end of a string: the contact is so short that 2,000 modes do not resolve it. Further modes cost little.
+#[test]
+fn modes_of_a_closed_form_do_not_end_before_the_restitution_converges() {
+    let scene = json!({
+        "structure": { "kind": "string", "length_m": 0.4752, "tension_n": 54.74, "mass_per_length_kg_m": 0.003852,
+                       "flexural_rigidity_n_m2": 1.747e-5, "damping_ratio": 0.0478 },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.000483, "speed_m_s": 0.0712 },
+        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+        "location_m": 0.00505, "tolerance": 1e-6 });
+    let scene = Scene::from_value(&scene).unwrap();
+    let found = answer(&scene);
+    let error = (found.restitution.unwrap() - converged(&scene, 5000, 1e-9)).abs();
+    assert!(found.settled && error < 1e-7, "{error:e} {found:?}");
+}
+
+/// A heavy ball on a large plate: a slow contact needs far fewer modes than a plate has.
+#[test]
+fn a_slow_contact_begins_with_few_modes() {
+    let scene = json!({
+        "structure": { "kind": "plate", "length_m": 0.876, "width_m": 0.738, "thickness_m": 0.0129, "youngs_modulus_pa": 2e11,
+                       "poissons_ratio": 0.3, "density_kg_m3": 7800, "edges": ["pinned", "pinned", "pinned", "pinned"] },
+        "striker": { "density_kg_m3": 7800, "radius_m": 0.18, "speed_m_s": 4.64 },
+        "contact": { "law": "lankarani-nikravesh", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.457 },
+        "location_m": [0.0156, 0.155], "tolerance": 1e-4 });
+    let scene = Scene::from_value(&scene).unwrap();
+    let found = answer(&scene);
+    let error = (found.restitution.unwrap() - converged(&scene, 1500, 1e-9)).abs();
+    assert!(found.settled && error < 1e-4 && found.modes < 400, "{error:e} {found:?}");
 }
 
 /// The estimate of the truncation error costs no more than the impact.

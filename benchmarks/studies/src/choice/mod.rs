@@ -66,8 +66,9 @@ fn rows(study: &mut Study, wanted: &Wanted) -> Result<Vec<Row>, Failure> {
     let is_of = |rows: &[Row], number: u64| rows.iter().any(|row| row.scene == number);
     let missing: Vec<u64> =
         numbers.iter().copied().filter(|&number| !journal.rows().iter().any(|rows| is_of(rows, number))).collect();
+    let quick = study.quick;
     for batch in missing.chunks(BATCH) {
-        journal.extend(study.sweep(batch, row::TOLERANCES.len(), |&number| Row::of_scene(number))?)?;
+        journal.extend(study.sweep(batch, row::TOLERANCES.len(), |&number| Row::of_scene(number, quick))?)?;
     }
     let mut rows: Vec<Row> = journal.into_rows().into_iter().flatten().collect();
     rows.retain(|row| numbers.contains(&row.scene));

@@ -16,6 +16,8 @@ const FEWEST_OF_REFERENCE: usize = 128;
 /// The number of modes of the reference is doubled until its error is this many times smaller than the finest tolerance, or
 /// until there are no more modes.
 const KNOWN: f64 = 30.0;
+/// Largest number of modes of a reference in a quick run.
+const MOST_OF_QUICK: usize = 1500;
 const REFERENCE_TOLERANCE: f64 = 1e-10;
 /// Factor between successive numbers of modes, also of the reference.
 const RAISE: f64 = std::f64::consts::SQRT_2;
@@ -60,7 +62,7 @@ pub(super) struct Row {
 
 impl Row {
     /// The rows of a scene, one per tolerance.
-    pub fn of_scene(number: u64) -> Result<Vec<Row>, Failure> {
+    pub fn of_scene(number: u64, quick: bool) -> Result<Vec<Row>, Failure> {
         let drawn = scenes::scene(number)?;
         let mut answers = Vec::new();
         for tolerance in TOLERANCES {
@@ -68,7 +70,8 @@ impl Row {
             answers.push(scene.answer_with(&mut Kept::default())?);
         }
         let most = answers.iter().map(|answer| answer.modes).max().unwrap_or_default();
-        let truth = Truth::new(&drawn, RICHER * most, drawn.most_modes.max(most))?;
+        let at_most = if quick { drawn.most_modes.min(MOST_OF_QUICK) } else { drawn.most_modes };
+        let truth = Truth::new(&drawn, RICHER * most, at_most.max(most))?;
         let chosen = drawn.scene.modes == Modes::Auto;
         let mut rows = Vec::new();
         for answer in answers {

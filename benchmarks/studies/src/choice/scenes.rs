@@ -20,7 +20,7 @@ const LIGHT: f64 = 0.1;
 const STATED: [f64; 2] = [20.0, 60.0];
 
 /// Largest number of modes of a reference; smaller for a plate whose modes need large matrices.
-const MOST_MODES: usize = 1500;
+const MOST_MODES: usize = 8000;
 const RITZ: usize = 300;
 
 /// The random numbers of a scene or a beam.

@@ -4,7 +4,7 @@
 //! the one before,
 //!
 //! ```text
-//! u = max( 2 d_1, d_2, e_r, d_s ) + d_c,      e_r = 10 E_r / E max(1, R^(-1/2)).
+//! u = max( 2 d_1, d_2, e_r, d_s ) + d_c,      e_r = 3 E_r / E max(1, R^(-1/2)).
 //! ```
 //!
 //! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
@@ -34,7 +34,7 @@ use crate::scene::compliance;
 /// The uncertainty from truncated modes in terms of the larger of two changes, weighted below, and of the energy of the
 /// remainder modes.
 const CAUTION: f64 = 2.0;
-const OF_ENERGY: f64 = 10.0;
+const OF_ENERGY: f64 = 3.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
 /// Weight of changes at the end of a list, where no further number of modes can show whether two agree by accident.

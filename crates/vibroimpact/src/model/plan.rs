@@ -15,7 +15,7 @@ use vibroimpact_sim::modal::Settings;
 
 use super::choice::{Choice, Tried};
 use super::choose::{forced_tier, refused};
-use super::guess::guess;
+use super::guess::{fewer, guess};
 use super::pose::Pose;
 use super::theory::Found;
 use super::{Cost, Kept, Model, emoc, infinite, rigid};
@@ -199,7 +199,8 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
         let count = if chooses_modes(pose.scene) { Some(0) } else { pose.scene.modes.count() };
         return Estimate::of_stated(&pose.scene.impact_of(count, pose.kept)?);
     }
-    let (first, second) = guess(pose, cost)?;
+    let second = guess(pose, cost)?;
+    let first = fewer(second);
     let reason = format!(
         "begins with {second} modes, which it compares with {first}, and raises their number until the restitution converges \
          within {}",

@@ -12,7 +12,7 @@ use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, chooses
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
 /// Largest number of modes that is tried.
-const MOST_MODES: usize = 1500;
+const MOST_MODES: usize = 4000;
 /// A mode that takes up less than this share of the tolerance of the striker's energy counts as not excited.
 const UNEXCITED: f64 = 1e-6;
 

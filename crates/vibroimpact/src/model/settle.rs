@@ -6,7 +6,8 @@
 //!
 //! Restitutions may agree by accident while the histories of two impacts do not, and then differ again at the next number. The
 //! striker's speed in every flight between two contacts is therefore compared as well, and after more than one contact a third
-//! number of modes is required.
+//! number of modes is required. So it is for plates, most of whose modes hardly move a given location: the modes between two numbers
+//! may be such modes.
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
@@ -27,6 +28,7 @@ use super::pose::{Pose, Source};
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::impact::Impact;
+use crate::scene;
 use crate::text::small;
 
 /// The largest number of modes counts if it is this many times the one before; the change by a smaller step contains little
@@ -242,19 +244,28 @@ impl Rungs {
 /// Raises the number of modes until the restitution has converged, or there are no more.
 pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     let (most, tolerance) = (pose.source.most(), pose.tolerance);
-    let (_, expected) = guess(pose, cost)?;
+    let expected = guess(pose, cost)?;
     let listed = matches!(pose.source, Source::Listed { .. });
+    let is_plate = matches!(pose.scene.structure, scene::Structure::Plate(_));
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
     let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
     let mut rungs = Rungs { last: first, earlier: Vec::new(), momentum_n_s: momentum_n_s(pose), complete };
     loop {
         let count = rungs.last.count;
+        let several_contacts = rungs.last.has_several_contacts();
         let ends = LEAST_RAISE * count as f64 > most as f64;
         // the energy of one impact shows that its modes are too few; otherwise a change has to
         let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
             rungs.add_earlier(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
+        }
+        if is_plate && rungs.near().count() == 2 && rungs.solver() + rungs.left_out() <= tolerance && !several_contacts
+        {
+            // the smallest of three
+            let before = rungs.earlier.len() - 1;
+            let third = Rung::new(pose, fewer(rungs.earlier[before].count), settings(tolerance, tightened), cost)?;
+            rungs.earlier.insert(before, Rung { recording: None, ..third });
         }
         if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.tail.is_none() {
             rungs.last.find_tail(pose, cost)?;
@@ -262,18 +273,18 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         let (solver, left_out) = (rungs.solver(), rungs.left_out());
         let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
         // after several contacts, two impacts may agree although both miss the same contact: a third one is required
-        let several = rungs.last.has_several_contacts() && rungs.near().count() < 3;
+        let several = several_contacts && rungs.near().count() < 3;
         let settled = solver + left_out <= tolerance && both && !several && !rungs.earlier.is_empty();
         let limit = matches!(rungs.last.solution.outcome, Outcome::Stopped(_));
         if settled || limit {
             return finish(pose, rungs, settled, cost);
         }
         let tighter = rungs.last.impact.settings.tolerance > SOLVER_RANGE.0;
-        let next = if count >= PATIENCE && rungs.last.has_several_contacts() && !rungs.falls() {
+        let next = if count >= PATIENCE && several_contacts && !rungs.falls() {
             return finish(pose, rungs, false, cost);
         } else if !ends {
             let raised = more(count);
-            tightened += usize::from(rungs.last.has_several_contacts());
+            tightened += usize::from(several_contacts);
             if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised }
         } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(tolerance)) {
             // the list is at its end, and the solver's error may be part of the change

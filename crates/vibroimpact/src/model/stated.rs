@@ -8,12 +8,14 @@
 //! ```
 //!
 //! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
-//! expected to need, but not so large that this would cost more than the impact.
+//! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact that
+//! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
+//! their number, and a small change from so few further modes may be an accident.
 
 use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choice::Choice;
-use super::guess::{RAISE, fewer, resolving};
+use super::guess::{fewer, guess};
 use super::left_out::{Change, with_softer_remainder};
 use super::pose::Pose;
 use super::settle::Conclusion;
@@ -30,8 +32,6 @@ const CAUTION: f64 = 3.0;
 /// which is solved twice and far more accurately.
 const SOLVER: f64 = 1e-6;
 const RICHER: usize = 2;
-/// Factor of the number of modes if the comparison has a single number.
-const SETTLED: f64 = 2.0;
 
 /// The modes as they are stated, or all that a list has.
 pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
@@ -89,11 +89,16 @@ fn left_out(
         }
         _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
     };
-    let wanted = needed(scene, LOOSE, kept, cost)?.unwrap_or(count).clamp(count, RICHER * count.max(1)).min(most);
-    let (fewer, more) = match &scene.start {
+    let affordable = RICHER * count.max(1);
+    let needed = match &scene.start {
+        Some(_) => affordable,
+        None => needed(scene, LOOSE, kept, cost)?.unwrap_or(count),
+    };
+    let more = needed.clamp(count, affordable).min(most);
+    let fewer = match &scene.start {
         // the motion before the impact may need all stated modes
-        Some(_) if count < most => (count, ((count as f64 * RAISE).ceil() as usize).min(most)),
-        _ => (fewer(wanted), wanted),
+        Some(_) if count < most => fewer(more).max(count),
+        _ => fewer(more),
     };
     let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
     let complete = |of: &Impact| of.remainder_modes == 0;
@@ -156,7 +161,7 @@ pub(super) fn needed(
         tolerance: Some(tolerance),
         ..scene.clone()
     };
-    Ok(Some(resolving(&mut Pose::new(&chosen, kept)?, SETTLED, cost)?))
+    Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?))
 }
 
 /// The scene with this many modes in place of `count`, and remainder modes for the others.

@@ -35,8 +35,10 @@ pub(crate) const COMPLETE: f64 = 1e-11;
 const ROUNDING: f64 = 1e-9;
 /// Modes for a remainder are computed in multiples of this number, so that impacts with a few more modes share them.
 const SIZES: usize = 64;
-/// Largest number of modes computed for a remainder because the location is near a reflection.
+/// Largest number of modes computed for a remainder because the location is near a reflection: of beams, and of strings and plates,
+/// whose modes have a closed form.
 const MOST_NEAR_REFLECTION: usize = 2048;
+const MOST_IN_CLOSED_FORM: usize = 8192;
 
 impl Structure {
     /// Number of modes from which those beyond the first `kept` can be extrapolated: only `kept` for a list, and for a plate whose
@@ -77,8 +79,9 @@ impl Structure {
             }
             _ => 0.0,
         };
+        let most = if let Structure::Beam(_) = self { MOST_NEAR_REFLECTION } else { MOST_IN_CLOSED_FORM };
         // on the end itself the shapes neither grow nor decrease
-        if count.is_finite() { count.ceil().clamp(0.0, MOST_NEAR_REFLECTION as f64) as usize } else { 0 }
+        if count.is_finite() { count.ceil().clamp(0.0, most as f64) as usize } else { 0 }
     }
 
     /// Remainder modes in place of all modes beyond the first `kept` of those `known`, for a structure with this static compliance.

@@ -189,17 +189,15 @@ impl Structure {
 
     /// Largest number of modes that the program tries of a structure whose modes it computes.
     pub(crate) fn most_modes(&self) -> usize {
-        // strings converge slowly and their modes are cheap; many modes of a plate do not move the location, and by Ritz's method
-        // more modes take many seconds
-        const STRING: usize = 2000;
-        const NAVIER: usize = 1600;
+        // closed forms are cheap; by Ritz's method more modes take many seconds
+        const CLOSED_FORM: usize = 4000;
         const RITZ: usize = 500;
         match self {
             Structure::Plate(plate) => {
-                let most = if plate.edges == [Edge::Pinned; 4] { NAVIER } else { RITZ };
+                let most = if plate.edges == [Edge::Pinned; 4] { CLOSED_FORM } else { RITZ };
                 plate.to_plate().map_or(0, |plate| plate.most_modes().min(most))
             }
-            _ => STRING,
+            _ => CLOSED_FORM,
         }
     }
 
