@@ -1,6 +1,7 @@
 //! Solves one impact on the beam of thesis chapter 3 a hundred times, for callgrind. See docs/performance.md.
 //!
-//! Usage: `impact_cost MODES TOLERANCE [uncertainty] [anew]`; the defaults are 40 and 1e-6.
+//! Usage: `impact_cost MODES TOLERANCE [uncertainty] [anew] [keep] [record]`; the defaults are 40 and 1e-6. `keep` keeps the
+//! motion, and `record` makes the history with its energy balance.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -27,7 +28,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if has("anew") {
             solver = Solver::new(black_box(&structure))?;
         }
-        solution = solver.solve(black_box(&ball()), &hertz(), None, &settings)?;
+        let striker = black_box(ball());
+        solution = if has("record") {
+            solver.record(&striker, &hertz(), None, &settings)?.0
+        } else if has("keep") {
+            solver.solve_and_keep(&striker, &hertz(), None, &settings)?.solution().clone()
+        } else {
+            solver.solve(&striker, &hertz(), None, &settings)?
+        };
         best = best.min(clock.elapsed().as_secs_f64());
     }
     println!("restitution {:?}, {:.1} us at best, {:?}", solution.restitution, 1e6 * best, solution.counts);

@@ -4,8 +4,8 @@
 //! (`damping_form.rs`). A contact excites all modes of a body by the same polynomial, `g_nk = -psi_k F_n`. The part quadratic
 //! in the force is therefore summed over the modes only once, and a panel takes a few operations for each mode.
 
-use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS, all_by_parts, by_parts};
-use super::system::{Link, System};
+use super::damping_form::{Form, all_by_parts, by_parts};
+use super::system::System;
 use crate::panel::dyadic::step_s;
 use crate::panel::lanes::Lanes;
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot};
@@ -152,86 +152,39 @@ impl Damping {
         contacts: &[usize],
         force: &[Legendre],
     ) -> f64 {
-        let mut lost = 0.0;
-        let Some(ByMode { free, cross }) = self.by_mode.get() else { return lost };
-        for body in damped {
-            let motion = amplitude[body.clone()].iter().zip(&rate[body.clone()]);
-            for ([aa, ab, bb], (a, b)) in free[body.clone()].iter().zip(motion) {
-                lost += (aa * a + ab * b) * a + bb * b * b;
-            }
-        }
-        for (i, &c) in contacts.iter().enumerate() {
-            let mut by_motion = [0.0; Q];
-            for span in system.links[c].spans.iter().filter(|span| damped.contains(&span.modes)) {
-                let motion = amplitude[span.modes.clone()].iter().zip(&rate[span.modes.clone()]);
-                let table = cross[span.modes.clone()].iter();
-                for (((from_a, from_b), psi), (a, b)) in table.zip(&span.psi).zip(motion) {
-                    let (a, b) = (psi * a, psi * b);
-                    for n in 0..Q {
-                        by_motion[n] += from_a[n] * a + from_b[n] * b;
+        let Some(ByMode { free, cross }) = self.by_mode.get() else { return 0.0 };
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut lost = 0.0;
+                for body in damped {
+                    let motion = amplitude[body.clone()].iter().zip(&rate[body.clone()]);
+                    for ([aa, ab, bb], (a, b)) in free[body.clone()].iter().zip(motion) {
+                        lost += (aa * a + ab * b) * a + bb * b * b;
                     }
                 }
-            }
-            lost -= dot(&by_motion, &force[i].0);
-            for (j, &other) in contacts[..=i].iter().enumerate() {
-                if let Some(pair) = self.of_pair(system, c, other) {
-                    let twice = if j < i { 2.0 } else { 1.0 };
-                    lost += twice * dot(&force[i].0, &apply(pair, &force[j].0));
-                }
-            }
-        }
-        lost
-    }
-}
-
-/// Energy that damping takes from these bodies within a panel of any length on which no mode turns by more than a radian (J).
-pub(crate) fn lost_within(
-    system: &System,
-    damped: &[Range<usize>],
-    h: f64,
-    (amplitude, rate): (&[f64], &[f64]),
-    contacts: &[usize],
-    force: &[Legendre],
-) -> f64 {
-    let rule = &*COARSE;
-    // effect of a contact force on a mode of unit weight, term by term
-    let push = |Legendre(force): &Legendre| -> Vec<[f64; COARSE_NODES]> {
-        let term = |rows: &[[f64; COARSE_NODES]; Q]| array::from_fn(|q| (0..Q).map(|n| rows[n][q] * force[n]).sum());
-        rule.forced.iter().take(TERMS).map(term).collect()
-    };
-    let pushes: Vec<(&Link, Vec<_>)> =
-        contacts.iter().zip(force).map(|(c, force)| (&system.links[*c], push(force))).collect();
-    let mut lost = 0.0;
-    for body in damped {
-        let on_body = |(link, push): &(&Link, Vec<_>)| {
-            let span = link.spans.iter().position(|span| span.modes == *body)?;
-            Some((link.spans[span].psi.clone(), push.clone()))
-        };
-        let here: Vec<(Vec<f64>, Vec<[f64; COARSE_NODES]>)> = pushes.iter().filter_map(on_body).collect();
-        for k in body.clone() {
-            let mode = &system.modes[k];
-            let drag = system.drag[k];
-            if drag == 0.0 {
-                continue;
-            }
-            let (held, b) = (h * system.square[k] * amplitude[k], rate[k]);
-            let mut values = [0.0; COARSE_NODES];
-            for (p, derivative) in Series::<COARSE_NODES>::derivatives(mode, h).take(TERMS).enumerate() {
-                // a constant force enters with the next power, a rate with this one
-                let (powers, next) = (&rule.powers[p], &rule.powers[p + 1]);
-                for q in 0..COARSE_NODES {
-                    values[q] += derivative * (b * powers[q] - held * next[q]);
-                }
-                for (psi, push) in &here {
-                    let scale = derivative * h * psi[k - body.start];
-                    for q in 0..COARSE_NODES {
-                        values[q] -= scale * push[p][q];
+                for (i, &c) in contacts.iter().enumerate() {
+                    let mut by_motion = [0.0; Q];
+                    for span in system.links[c].spans.iter().filter(|span| damped.contains(&span.modes)) {
+                        let motion = amplitude[span.modes.clone()].iter().zip(&rate[span.modes.clone()]);
+                        let table = cross[span.modes.clone()].iter();
+                        for (((from_a, from_b), psi), (a, b)) in table.zip(&span.psi).zip(motion) {
+                            let (a, b) = (psi * a, psi * b);
+                            for n in 0..Q {
+                                by_motion[n] += from_a[n] * a + from_b[n] * b;
+                            }
+                        }
+                    }
+                    lost -= dot(&by_motion, &force[i].0);
+                    for (j, &other) in contacts[..=i].iter().enumerate() {
+                        if let Some(pair) = self.of_pair(system, c, other) {
+                            let twice = if j < i { 2.0 } else { 1.0 };
+                            lost += twice * dot(&force[i].0, &apply(pair, &force[j].0));
+                        }
                     }
                 }
-            }
-            let square: f64 = rule.weights.iter().zip(&values).map(|(w, value)| w * value * value).sum();
-            lost += drag * h * square;
-        }
+                lost
+            },
+        )
     }
-    lost
 }

@@ -28,13 +28,7 @@ use std::sync::LazyLock;
 
 /// For a mode that turns by at most this much (rad) the coarser rule is sufficient.
 const GENTLE: f64 = 1.0;
-/// Number of terms of the power series for it.
-pub(crate) const TERMS: usize = 20;
-
-/// Nodes of that rule.
-pub(crate) const COARSE_NODES: usize = 12;
-
-pub(crate) static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
+static COARSE: LazyLock<Series<12>> = LazyLock::new(Series::new);
 static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
 
 /// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
@@ -90,12 +84,12 @@ impl Form {
 }
 
 /// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
-pub(crate) struct Series<const M: usize> {
-    pub weights: [f64; M],
+struct Series<const M: usize> {
+    weights: [f64; M],
     /// `x^p/p!`.
-    pub powers: Vec<[f64; M]>,
+    powers: Vec<[f64; M]>,
     /// `[p][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
-    pub forced: Vec<[[f64; M]; Q]>,
+    forced: Vec<[[f64; M]; Q]>,
 }
 
 impl<const M: usize> Series<M> {
@@ -124,7 +118,7 @@ impl<const M: usize> Series<M> {
     }
 
     /// `S'^(p)(0) h^p`.
-    pub fn derivatives(mode: &BodyMode, h: f64) -> impl Iterator<Item = f64> {
+    fn derivatives(mode: &BodyMode, h: f64) -> impl Iterator<Item = f64> {
         let angle = mode.omega_rad_s * h;
         let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
         let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
@@ -284,25 +278,26 @@ fn by_quadrature(mode: &BodyMode, h: f64) -> Form {
     form.scaled(mode, h)
 }
 
+/// By composite Gauss quadrature of the rates as [`crate::panel::oscillator`] has them.
+#[cfg(test)]
+pub(crate) fn reference(mode: &BodyMode, h: f64) -> Form {
+    let mut form = Form::NONE;
+    let panels = (0.5 * rate(mode) * h).ceil().max(2.0) as usize;
+    for i in 0..panels {
+        for &(y, w) in &BASIS.fine {
+            let x = (i as f64 + y) / panels as f64;
+            let (_, velocity) = response(mode, x * h);
+            let part = |n: usize| Legendre::through(&BASIS.nodes.map(|node| legendre(x * node)[n])).0;
+            let by_force = array::from_fn(|n| dot(&part(n), &velocity) / h);
+            form.add(w / panels as f64, propagate(mode, x * h).p22, &by_force);
+        }
+    }
+    form.scaled(mode, h)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// By composite Gauss quadrature of the rates as [`crate::panel::oscillator`] has them.
-    fn reference(mode: &BodyMode, h: f64) -> Form {
-        let mut form = Form::NONE;
-        let panels = (0.5 * rate(mode) * h).ceil().max(2.0) as usize;
-        for i in 0..panels {
-            for &(y, w) in &BASIS.fine {
-                let x = (i as f64 + y) / panels as f64;
-                let (_, velocity) = response(mode, x * h);
-                let part = |n: usize| Legendre::through(&BASIS.nodes.map(|node| legendre(x * node)[n])).0;
-                let by_force = array::from_fn(|n| dot(&part(n), &velocity) / h);
-                form.add(w / panels as f64, propagate(mode, x * h).p22, &by_force);
-            }
-        }
-        form.scaled(mode, h)
-    }
 
     #[test]
     fn every_form_is_the_integral_of_the_squared_rate() {

@@ -12,6 +12,7 @@
 
 use super::system::{Link, System};
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot, work_of_unit_forces};
+use crate::panel::vector::vectorized;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -60,6 +61,11 @@ impl Excess {
         };
         let pairs = std::iter::repeat_with(OnceLock::new).take(system.links.len().pow(2)).collect();
         Excess { h, by_motion: modes.enumerate().map(of).collect(), pairs }
+    }
+
+    /// Whether the work of two contacts, the second not after the first, has been computed.
+    pub fn knows(&self, system: &System, (c, other): (usize, usize)) -> bool {
+        self.pairs[c * system.links.len() + other].get().is_some()
     }
 
     /// Computes the work of two contacts, the second not after the first, unless it is known: from the responses of all elastic
@@ -117,19 +123,24 @@ impl Excess {
 
     /// Work of unit Legendre forces of a contact over the free motion.
     fn of_motion(&self, system: &System, link: &Link, amplitude: &[f64], rate: &[f64]) -> Nodal {
-        let mut work = [0.0; Q];
-        for span in &link.spans {
-            let fast = fast(system, self.h, &span.modes);
-            let psi = &span.psi[fast.start - span.modes.start..];
-            let motion = amplitude[fast.clone()].iter().zip(&rate[fast.clone()]);
-            for (((from_a, from_b), psi), (a, b)) in self.by_motion[fast].iter().zip(psi).zip(motion) {
-                let (a, b) = (psi * a, psi * b);
-                for n in 0..Q {
-                    work[n] += from_a[n] * a + from_b[n] * b;
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut work = [0.0; Q];
+                for span in &link.spans {
+                    let fast = fast(system, self.h, &span.modes);
+                    let psi = &span.psi[fast.start - span.modes.start..];
+                    let motion = amplitude[fast.clone()].iter().zip(&rate[fast.clone()]);
+                    for (((from_a, from_b), psi), (a, b)) in self.by_motion[fast].iter().zip(psi).zip(motion) {
+                        let (a, b) = (psi * a, psi * b);
+                        for n in 0..Q {
+                            work[n] += from_a[n] * a + from_b[n] * b;
+                        }
+                    }
                 }
-            }
-        }
-        work
+                work
+            },
+        )
     }
 }
 

@@ -41,7 +41,7 @@
 //! an undamped mode: the steady motion is then large, and free motion of the same size cancels it. Errors of two parts can
 //! cancel in `unaccounted_j`, so `rounding_j` states their bound.
 
-use super::damping::lost_within;
+use super::damping_series::lost_within;
 use super::load::Loads;
 use super::problem::Body;
 use super::solution::Ledger;

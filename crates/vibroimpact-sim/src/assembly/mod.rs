@@ -51,6 +51,7 @@ pub(crate) mod change;
 mod collocate;
 mod damping;
 mod damping_form;
+mod damping_series;
 pub(crate) mod dense;
 pub(crate) mod differentiate;
 mod enclosure;

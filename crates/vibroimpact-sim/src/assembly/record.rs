@@ -16,9 +16,19 @@ impl<'a> March<'a> {
             account.panel(&start, self.tables, h, contacts, force);
         }
         self.look_for_misses();
-        let free = contacts.is_empty();
-        let streams = self.observer.wants_panels();
-        if h == 0.0 || !streams && self.record.is_none() {
+        if h == 0.0 {
+            return;
+        }
+        let (streams, records) = (self.observer.wants_panels(), self.record.is_some());
+        // a flight without loads is one stretch, whatever the number of its panels
+        let free = contacts.is_empty() && self.loads.is_empty() && self.pending.is_empty();
+        let last = self.record.as_mut().and_then(|record| record.last_mut());
+        let flying = last.filter(|last| free && last.forces.is_empty());
+        let flies_on = flying.is_some();
+        if let Some(last) = flying {
+            last.length_s = self.time_s + h - last.start_s;
+        }
+        if !streams && (flies_on || !records) {
             return;
         }
         let mut stretch = self.stretch(h, contacts, force);
@@ -26,15 +36,9 @@ impl<'a> March<'a> {
             let (system, loads, laws) = (self.system, &self.loads, self.laws);
             self.observer.panel(&Panel { system, loads, laws, stretch: &stretch });
         }
-        if let Some(record) = &mut self.record {
+        if let Some(record) = self.record.as_mut().filter(|_| !flies_on) {
             stretch.events = std::mem::take(&mut self.pending);
-            // a flight without loads is one stretch, whatever the number of its panels
-            let flies_on =
-                |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty() && stretch.events.is_empty();
-            match record.last_mut().filter(|last| flies_on(last)) {
-                Some(last) => last.length_s = self.time_s + h - last.start_s,
-                None => record.push(stretch),
-            }
+            record.push(stretch);
         }
     }
 

@@ -97,7 +97,8 @@ impl Tables {
             self.level(j).excess.get_or_init(|| Excess::new(system, step_s(j), (0..system.modes.len()).map(on_panel)));
         let damping = (system.most_damping > 0.0).then(|| self.damping(system, j, contacts));
         for (i, &c) in contacts.iter().enumerate() {
-            for &other in contacts[..=i].iter().filter(|&&other| system.share_elastic_modes(c, other)) {
+            let missing = |other: usize| system.share_elastic_modes(c, other) && !excess.knows(system, (c, other));
+            for &other in contacts[..=i].iter().filter(|other| missing(**other)) {
                 let lost = damping.and_then(|damping| damping.of_pair(system, c, other));
                 let by_quadrature =
                     [(c, other), (other, c)].map(|(c, other)| self.elastic_response(j, c, other).works());
