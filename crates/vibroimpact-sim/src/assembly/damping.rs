@@ -8,7 +8,7 @@ use super::damping_form::{Form, all_by_parts, by_parts};
 use super::system::System;
 use crate::panel::dyadic::step_s;
 use crate::panel::lanes::Lanes;
-use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot};
+use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, add_motion, apply, dot};
 use crate::panel::vector::{LANES, sum_of_lanes, vectorized};
 use std::array;
 use std::ops::Range;
@@ -166,14 +166,8 @@ impl Damping {
                 for (i, &c) in contacts.iter().enumerate() {
                     let mut by_motion = [0.0; Q];
                     for span in system.links[c].spans.iter().filter(|span| damped.contains(&span.modes)) {
-                        let motion = amplitude[span.modes.clone()].iter().zip(&rate[span.modes.clone()]);
-                        let table = cross[span.modes.clone()].iter();
-                        for (((from_a, from_b), psi), (a, b)) in table.zip(&span.psi).zip(motion) {
-                            let (a, b) = (psi * a, psi * b);
-                            for n in 0..Q {
-                                by_motion[n] += from_a[n] * a + from_b[n] * b;
-                            }
-                        }
+                        let motion = (&amplitude[span.modes.clone()], &rate[span.modes.clone()]);
+                        add_motion(&mut by_motion, &cross[span.modes.clone()], &span.psi, motion);
                     }
                     lost -= dot(&by_motion, &force[i].0);
                     for (j, &other) in contacts[..=i].iter().enumerate() {

@@ -11,7 +11,7 @@
 //! `((sum g_n B_n)^2 + omega^2 (sum g_n A_n)^2)/2` and that which damping dissipates (`damping.rs`).
 
 use super::system::{Link, System};
-use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply, dot, work_of_unit_forces};
+use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, add_motion, apply, dot, work_of_unit_forces};
 use crate::panel::vector::vectorized;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -130,13 +130,8 @@ impl Excess {
                 for span in &link.spans {
                     let fast = fast(system, self.h, &span.modes);
                     let psi = &span.psi[fast.start - span.modes.start..];
-                    let motion = amplitude[fast.clone()].iter().zip(&rate[fast.clone()]);
-                    for (((from_a, from_b), psi), (a, b)) in self.by_motion[fast].iter().zip(psi).zip(motion) {
-                        let (a, b) = (psi * a, psi * b);
-                        for n in 0..Q {
-                            work[n] += from_a[n] * a + from_b[n] * b;
-                        }
-                    }
+                    let motion = (&amplitude[fast.clone()], &rate[fast.clone()]);
+                    add_motion(&mut work, &self.by_motion[fast], psi, motion);
                 }
                 work
             },

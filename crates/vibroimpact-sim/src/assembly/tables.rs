@@ -8,7 +8,7 @@ use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
 use crate::panel::forcing::{ByParts, Compliance, Way, by_quadrature, by_series};
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, apply, dot, work_of_unit_forces};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, work_of_unit_forces};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
@@ -344,13 +344,8 @@ impl Forced {
             || {
                 let mut moved = [0.0; Q];
                 for Span { modes, psi } in spans {
-                    let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
-                    for (((from_a, from_b), psi), (a, b)) in self.at_nodes[modes.clone()].iter().zip(psi).zip(motion) {
-                        let (a, b) = (psi * a, psi * b);
-                        for i in 0..Q {
-                            moved[i] += from_a[i] * a + from_b[i] * b;
-                        }
-                    }
+                    let motion = (&amplitude[modes.clone()], &rate[modes.clone()]);
+                    add_motion(&mut moved, &self.at_nodes[modes.clone()], psi, motion);
                 }
                 moved
             },

@@ -66,6 +66,18 @@ pub(crate) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
 }
 
+/// Adds to `sum` the values that some modes contribute by free motion: `psi (from_a a + from_b b)` of each, with its pair of vectors
+/// in the table.
+#[inline(always)]
+pub(crate) fn add_motion(sum: &mut Nodal, table: &[(Nodal, Nodal)], psi: &[f64], (amplitude, rate): (&[f64], &[f64])) {
+    for (((from_a, from_b), psi), (a, b)) in table.iter().zip(psi).zip(amplitude.iter().zip(rate)) {
+        let (a, b) = (psi * a, psi * b);
+        for n in 0..Q {
+            sum[n] += from_a[n] * a + from_b[n] * b;
+        }
+    }
+}
+
 /// A matrix, kept by columns, times a vector.
 #[inline(always)]
 pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
