@@ -273,20 +273,18 @@ impl Piece {
     }
 
     /// Integral of the product of the displacements over the span: closed form for two long pieces; Gauss's rule of degree 19
-    /// on panels of a few radians if a pair of waves is nearly constant over the span.
+    /// on panels of a few radians otherwise, and if two pairs of waves are nearly constant over the span.
     pub fn product(&self, other: &Self) -> f64 {
-        match (self.displacement_waves(), other.displacement_waves()) {
-            (Some(u), Some(v)) => u.product(&v, self.length()),
-            _ => self.quadrature(other, |piece, x| piece.displacement(x)),
-        }
+        let closed = |u: Superposition| u.product(&other.displacement_waves()?, self.length());
+        self.displacement_waves()
+            .and_then(closed)
+            .unwrap_or_else(|| self.quadrature(other, |piece, x| piece.displacement(x)))
     }
 
     /// Integral of the product of the rotations.
     pub fn rotation_product(&self, other: &Self) -> f64 {
-        match (self.rotation_waves(), other.rotation_waves()) {
-            (Some(u), Some(v)) => u.product(&v, self.length()),
-            _ => self.quadrature(other, |piece, x| piece.rotation(x)),
-        }
+        let closed = |u: Superposition| u.product(&other.rotation_waves()?, self.length());
+        self.rotation_waves().and_then(closed).unwrap_or_else(|| self.quadrature(other, |piece, x| piece.rotation(x)))
     }
 
     fn quadrature(&self, other: &Self, value: impl Fn(&Self, f64) -> f64) -> f64 {
@@ -310,12 +308,12 @@ impl Piece {
 
     fn displacement_waves(&self) -> Option<Superposition> {
         let Piece::Long { k, second, length, wave: [a, b, c, d], .. } = *self else { return None };
-        Superposition::new([k, a, b], second, length, |mu| [c, d * mu], [c, d])
+        Some(Superposition::new([k, a, b], second, length, |mu| [c, d * mu], [c, d]))
     }
 
     fn rotation_waves(&self) -> Option<Superposition> {
         let Piece::Long { k, second, length, wave: [a, b, c, d], turns: [t1, t2] } = *self else { return None };
-        Superposition::new([k, t1 * b, -t1 * a], second, length, |_| [t2 * d, t2 * c], [-t2 * c, t2 * d])
+        Some(Superposition::new([k, t1 * b, -t1 * a], second, length, |_| [t2 * d, t2 * c], [-t2 * c, t2 * d]))
     }
 }
 
