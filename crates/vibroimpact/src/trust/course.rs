@@ -13,8 +13,10 @@ const CONTACTS: usize = 8;
 /// Frequency times duration beyond which the spectrum of a contact is neglected: that of a smooth force decreases as
 /// `omega^(-5/2)`.
 const FASTEST: f64 = 200.0;
-/// Steps of Simpson's rule over the frequency, in units of the inverse duration, over which the spectrum varies.
-const STEP: f64 = 1.0;
+/// Steps of Simpson's rule over the frequency, in units of the inverse duration `T`. `|F|^2` is the transform of an even function
+/// that is zero beyond `T`, so that the rule with any step below `2 pi/T` errs at the upper limit alone, by less than a hundredth of
+/// the part beyond.
+const STEP: f64 = 3.0;
 
 /// One contact.
 pub(super) struct Pulse {
