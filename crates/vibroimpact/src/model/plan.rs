@@ -30,9 +30,9 @@ const PILOT_FEWEST: usize = 6;
 const PILOT_TOLERANCE: f64 = 1e-4;
 /// Smallest and largest mode-steps in terms of `s N`, and the power `q`: if the pilot finds one contact, if it finds several (each
 /// of which may need more modes), and for stated modes.
-const ONE_CONTACT: ([f64; 2], f64) = ([0.9, 32.0], 0.06);
+const ONE_CONTACT: ([f64; 2], f64) = ([0.68, 36.0], 0.06);
 const SEVERAL: ([f64; 2], f64) = ([1.1, 350.0], 0.06);
-const STATED: ([f64; 2], f64) = ([4.2, 11.0], 0.0);
+const STATED: ([f64; 2], f64) = ([4.2, 18.0], 0.0);
 /// Rough time (s) of a mode-step on a computer of the 2020s, of a mode (its share of the tables), and of the rest.
 const MODE_STEP_S: f64 = 2e-8;
 const MODE_S: f64 = 8e-6;
