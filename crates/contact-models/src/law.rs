@@ -116,8 +116,8 @@ impl Force {
     pub const ZERO: Force = Force { force_n: 0.0, per_compression_n_m: 0.0, per_rate_n_s_m: 0.0 };
 }
 
-/// A force-compression law with smooth branches.
-pub trait ContactLaw {
+/// A force-compression law with smooth branches, which threads may evaluate at the same time.
+pub trait ContactLaw: Send + Sync {
     /// The branch on which a contact begins if surfaces with this memory meet at `approach_speed_m_s` (the rate of compression
     /// at first touch, not negative).
     fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch;

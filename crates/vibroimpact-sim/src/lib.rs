@@ -20,12 +20,14 @@
 //! uncertainty shows by how much.
 
 pub mod assembly;
+mod concurrent;
 pub mod dropped_rod;
 pub mod infinite;
 pub mod modal;
 mod panel;
 mod stop;
 
+pub use concurrent::both;
 pub use invalid_input::InvalidInput;
 pub use stop::StopReason;
 

@@ -59,10 +59,10 @@ impl Impact {
         solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
-    /// As [`Impact::solve`], with cached tables. The motion is returned, too, if the cache keeps motions.
+    /// As [`Impact::solve`], with cached tables. The motion is returned, too, if the cache is of one scene alone.
     pub(crate) fn solve_with(&self, kept: &mut Kept) -> Result<(Solution, Option<Recording>), InvalidInput> {
         let Impact { structure, striker, law, start, settings, .. } = self;
-        if !kept.is_recording() {
+        if !kept.is_alone() {
             let solver = kept.solver(structure)?;
             return Ok((solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?, None));
         }
@@ -71,8 +71,9 @@ impl Impact {
     }
 
     fn keep_with(&self, settings: &Settings, kept: &mut Kept) -> Result<Recording, InvalidInput> {
+        let settings = Settings { concurrent: kept.is_alone(), ..*settings };
         let solver = kept.solver(&self.structure)?;
-        solver.solve_and_keep(&self.striker, &self.law, self.start.as_ref(), settings).map_err(in_scene)
+        solver.solve_and_keep(&self.striker, &self.law, self.start.as_ref(), &settings).map_err(in_scene)
     }
 
     /// As [`Impact::record`], of an impact whose uncertainty is known: with its motion if it is kept, otherwise with cached tables

@@ -61,7 +61,7 @@ impl Scene {
             let (scale, solution) = self.solve_infinite()?;
             return Ok(Simulation::Infinite { scale, solution });
         }
-        let kept = &mut Kept::recording();
+        let kept = &mut Kept::alone();
         let choice = self.choose_and_judge(kept)?;
         let impact = match choice.impact {
             Some(impact) => impact,

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use vibroimpact::Scene;
 use vibroimpact::beam_modes::{Beam, End, Segment};
 use vibroimpact::contact_models::Hertz;
 use vibroimpact::model::{Answer, Kept, Model, Modes, Reflection, VALIDATED, reflection_bound};
+use vibroimpact::simulate::Simulation;
 use vibroimpact::vibroimpact_sim::infinite::{self, BeamSection};
 use vibroimpact::vibroimpact_sim::modal::{Settings, Solution, Solver, Striker, Structure};
+use vibroimpact::{Impact, Scene};
 
 /// The pinned beam of chapter 3 with its ball; the program chooses the number of modes.
 fn chapter3() -> Value {
@@ -156,6 +157,26 @@ fn a_result_is_the_same_every_time() {
     assert_eq!(choice.impact.unwrap().solve().unwrap().restitution, first.restitution);
     let impact = scene.impact().unwrap();
     assert_eq!((impact.kept_modes(), impact.remainder_modes), (first.modes, first.remainder_modes));
+}
+
+/// For one scene alone, impacts that do not depend on each other are solved in threads of their own.
+#[test]
+fn impacts_that_are_solved_at_the_same_time_change_no_bit() {
+    let shear = |modes: Value| with(&[("/structure/segments/0/poissons_ratio", json!(0.3)), ("/modes", modes)]);
+    let gallery = ["moving-beam", "hysteretic", "cantilever-plate", "measured-modes", "linear-stop"].map(|name| {
+        let path = format!("{}/../../datasets/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    });
+    for scene in
+        [chapter3(), shear(json!("auto")), shear(json!(20)), with(&[("/modes", json!(40))])].iter().chain(&gallery)
+    {
+        let scene = Scene::from_value(scene).unwrap();
+        let Simulation::Modal(found) = scene.simulate().unwrap() else { panic!("{scene:?}") };
+        let impact =
+            Impact { settings: Settings { concurrent: false, ..found.impact.settings }, ..found.impact.clone() };
+        assert_eq!(found.summary.choice, Some(scene.answer().unwrap()));
+        assert_eq!(found.history.energy_ledger(), impact.record().unwrap().1.energy_ledger());
+    }
 }
 
 #[test]

@@ -120,7 +120,7 @@ pub(crate) enum Keep {
 }
 
 /// The whole motion of a run.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Record {
     /// Its stretches. If the bodies have separated for good, the last one is endless; otherwise the last one has zero length.
     pub stretches: Vec<Stretch>,

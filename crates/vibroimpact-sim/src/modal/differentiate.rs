@@ -178,7 +178,7 @@ impl Solver {
     /// The impact at its tolerance and at a coarser one, differentiated along both.
     fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
-        let (solution, fine) = self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss)?;
+        let (solution, fine, _) = self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss, |_| ())?;
         let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
         let none = |solution, why| {
             let derivatives = parameters.iter().map(|_| Err(why)).collect();

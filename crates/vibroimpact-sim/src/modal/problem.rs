@@ -176,6 +176,9 @@ pub struct Settings {
     pub tolerance: f64,
     /// Solve again, more coarsely, to estimate the uncertainty of the restitution. Default true.
     pub estimate_uncertainty: bool,
+    /// Solve these coarser problems in a thread beside the impact. The result is the same to the last bit, a single impact takes
+    /// less time, and many impacts in parallel take a little more. Default false.
+    pub concurrent: bool,
     /// Stop after this many contacts ([`StopReason::SubImpacts`](crate::StopReason)). Default 10,000.
     pub max_sub_impacts: usize,
     /// Stop after this many steps in contact ([`StopReason::Steps`](crate::StopReason)), or in the search for contacts
@@ -191,6 +194,7 @@ impl Default for Settings {
         Settings {
             tolerance: 1e-9,
             estimate_uncertainty: true,
+            concurrent: false,
             max_sub_impacts: 10_000,
             max_steps: 200_000,
             until_s: 0.0,

@@ -1,10 +1,13 @@
 //! A solved impact with its motion, panel by panel.
 
 use super::history::{History, Recorded};
+use super::problem::{Mode, Start, Striker};
 use super::solution::{Counts, Solution};
 use crate::assembly::dense::Stretch;
 use crate::assembly::ledger::{Dissipation, Moment, Sum};
 use crate::assembly::load::Loads;
+use crate::assembly::solve::Record;
+use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::panel::dyadic::{level_within, step_s};
 use crate::panel::legendre::Legendre;
@@ -18,10 +21,15 @@ use std::sync::Arc;
 pub struct Recording {
     pub(crate) solution: Solution,
     pub(crate) counts: Counts,
-    pub(crate) recorded: Recorded,
-    /// Work of the contact without that of fast modes (J).
-    pub(crate) contact_work_j: f64,
+    pub(crate) modes: Vec<Mode>,
+    pub(crate) moved: Vec<usize>,
+    pub(crate) striker: Striker,
+    pub(crate) start: Start,
+    pub(crate) system: System,
+    pub(crate) record: Record,
     pub(crate) tables: Arc<Tables>,
+    /// If they are known already.
+    pub(crate) work_and_damping_j: Option<[f64; 2]>,
 }
 
 impl fmt::Debug for Recording {
@@ -43,33 +51,36 @@ impl Recording {
 
     /// The history, for the law with which the impact was solved.
     pub fn history<L: ContactLaw>(self, law: L) -> (Solution, History<L>) {
-        let work_and_damping_j = self.work_and_damping_j();
-        let history = History::new(self.recorded, law, &self.solution, work_and_damping_j);
-        (self.solution, history)
+        let Recording {
+            solution, modes, moved, striker, start, system, record, tables, work_and_damping_j: known, ..
+        } = self;
+        let work_and_damping_j = known.unwrap_or_else(|| work_and_damping_j(&system, &record, &tables));
+        let recorded = Recorded { modes, moved, striker, start, system, stretches: record.stretches };
+        let history = History::new(recorded, law, &solution, work_and_damping_j);
+        (solution, history)
     }
+}
 
-    /// Work of the contact, and energy that the moved modes lose to damping (J).
-    fn work_and_damping_j(&self) -> [f64; 2] {
-        let Recorded { system, stretches, .. } = &self.recorded;
-        let loads = Loads::new(&[], system);
-        let mut dissipation = Dissipation::new(system);
-        let mut work_j = Sum::default();
-        work_j += self.contact_work_j;
-        for stretch in stretches {
-            let Stretch { start_s, length_s, amplitude, rate, forces, .. } = stretch;
-            let start = Moment { system, loads: &loads, time_s: *start_s, amplitude, rate };
-            // the end of the record is the start of its last stretch
-            dissipation.land(&start);
-            let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().copied().unzip();
-            dissipation.panel(&start, &self.tables, *length_s, &contacts, &force);
-            let level = level_within(*length_s);
-            if !contacts.is_empty()
-                && step_s(level) == *length_s
-                && let Some(excess) = self.tables.excess(system, level, &contacts)
-            {
-                work_j += excess.work_j(system, (amplitude, rate), &contacts, &force);
-            }
+/// Work of the contact, and energy that the moved modes lose to damping (J).
+pub(crate) fn work_and_damping_j(system: &System, record: &Record, tables: &Tables) -> [f64; 2] {
+    let loads = Loads::new(&[], system);
+    let mut dissipation = Dissipation::new(system);
+    let mut work_j = Sum::default();
+    work_j += record.contact_work_j;
+    for stretch in &record.stretches {
+        let Stretch { start_s, length_s, amplitude, rate, forces, .. } = stretch;
+        let start = Moment { system, loads: &loads, time_s: *start_s, amplitude, rate };
+        // the end of the record is the start of its last stretch
+        dissipation.land(&start);
+        let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().copied().unzip();
+        dissipation.panel(&start, tables, *length_s, &contacts, &force);
+        let level = level_within(*length_s);
+        if !contacts.is_empty()
+            && step_s(level) == *length_s
+            && let Some(excess) = tables.excess(system, level, &contacts)
+        {
+            work_j += excess.work_j(system, (amplitude, rate), &contacts, &force);
         }
-        [work_j.total(), dissipation.lost_j.total()]
     }
+    [work_j.total(), dissipation.lost_j.total()]
 }

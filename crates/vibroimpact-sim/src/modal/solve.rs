@@ -1,9 +1,9 @@
 //! Solves an impact from first touch until it is certain that the bodies never meet again.
 
-use super::history::{History, Recorded, all_modes};
+use super::history::{History, all_modes};
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
-use super::recording::Recording;
+use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
 use crate::StopReason;
@@ -12,6 +12,7 @@ use crate::assembly::solve::{Keep, follow};
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::assembly::{self, Assembly, Interval, Observer};
+use crate::concurrent::both;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::f64::consts::SQRT_2;
@@ -178,7 +179,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
-        Ok(self.solve_into(striker, law, start, settings, Keep::Result)?.0)
+        Ok(self.solve_into(striker, law, start, settings, Keep::Result, |_| ())?.0)
     }
 
     /// Solves one impact and keeps its motion.
@@ -192,13 +193,24 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Recording, InvalidInput> {
-        let (solution, run) = self.solve_into(striker, law, start, settings, Keep::Motion)?;
-        let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
-        let system = System::new(&posed::assembly(&self.modes, &self.moved, striker, &start).with_laws(Vec::new()));
-        let tables = Arc::clone(self.tables(&system));
-        let (modes, moved, stretches) = (self.modes.clone(), self.moved.clone(), run.record.stretches);
-        let recorded = Recorded { modes, moved, striker: *striker, start, system, stretches };
-        Ok(Recording { solution, counts: run.counts, recorded, contact_work_j: run.record.contact_work_j, tables })
+        let motion = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
+        let system = System::new(&posed::assembly(&self.modes, &self.moved, striker, &motion).with_laws(Vec::new()));
+        let tables = self.tables(&system);
+        let book = |run: &Run| work_and_damping_j(&system, &run.record, tables);
+        let (solution, Run { record, counts, .. }, booked) =
+            self.solve_into(striker, law, start, settings, Keep::Motion, book)?;
+        Ok(Recording {
+            solution,
+            counts,
+            modes: self.modes.clone(),
+            moved: self.moved.clone(),
+            striker: *striker,
+            start: motion,
+            record,
+            tables: Arc::clone(tables),
+            work_and_damping_j: booked,
+            system,
+        })
     }
 
     /// Solves one impact, with its whole history.
@@ -215,14 +227,16 @@ impl Solver {
         Ok(self.solve_and_keep(striker, law, start, settings)?.history(law.clone()))
     }
 
-    pub(crate) fn solve_into(
+    /// `meanwhile` is applied to the run while coarser problems are solved in another thread, if they are.
+    pub(crate) fn solve_into<T>(
         &self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
         settings: &Settings,
         keep: Keep,
-    ) -> Result<(Solution, Run), InvalidInput> {
+        meanwhile: impl FnOnce(&Run) -> T,
+    ) -> Result<(Solution, Run, Option<T>), InvalidInput> {
         striker.check()?;
         settings.check()?;
         let at_rest;
@@ -243,11 +257,26 @@ impl Solver {
 
         let impact = Impact { striker, law, start, settings };
         let mut lowered = self.lower(&impact);
-        let mut run = self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
+        let mut solve = || self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
+        let Settings { estimate_uncertainty, concurrent, .. } = *settings;
+        let (beside, mut run, found) = if estimate_uncertainty && concurrent {
+            let solve_and_go_on = || {
+                let run = solve();
+                let found = meanwhile(&run);
+                (run, found)
+            };
+            let (coarser, (run, found)) = both(true, || self.coarser(&impact), solve_and_go_on);
+            (Some(coarser), run, Some(found))
+        } else {
+            (None, solve(), None)
+        };
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
-        let known = if settings.estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
-        let restitution_uncertainty = known.map(|known| self.uncertainty(&known, &impact, &mut lowered, &mut counts));
+        let known = if estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
+        let restitution_uncertainty = known.map(|known| {
+            let coarser = beside.unwrap_or_else(|| self.coarser(&impact));
+            self.uncertainty(&known, &coarser, &impact, &mut lowered, &mut counts)
+        });
         let solution = Solution {
             outcome: run.outcome,
             restitution,
@@ -259,22 +288,44 @@ impl Solver {
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };
-        Ok((solution, run))
+        Ok((solution, run, found))
     }
 
-    /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
-    /// certain.
-    fn uncertainty(&self, known: &Restitutions, impact: &Impact, lowered: &mut Lowered, counts: &mut Counts) -> f64 {
-        let tolerance = impact.settings.tolerance.min(LOOSEST);
-        let (mut spread, mut same_contacts) = (0.0f64, true);
+    /// Coarser solutions of the same impact in other units of time, up to the first without a restitution.
+    fn coarser(&self, impact: &Impact) -> Vec<(Counts, Option<Restitutions>)> {
+        let mut found = Vec::with_capacity(COARSER.len());
         for (other, (unit, factor)) in self.others.iter().zip(COARSER) {
             let solver = other.get_or_init(|| Box::new(Solver::unchecked(unit.modes(&self.modes))));
             let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
+            let tolerance = factor * impact.settings.tolerance.min(LOOSEST);
             let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
-            let run = solver.run_lowered(&impact, &mut solver.lower(&impact), factor * tolerance, Keep::Result);
-            *counts += run.counts;
-            let Some(coarser) = solver.restitutions(&run, &impact, unit) else { return 1.0 };
-            spread = spread.max(known.difference(&coarser));
+            let run = solver.run_lowered(&impact, &mut solver.lower(&impact), tolerance, Keep::Result);
+            let restitutions = solver.restitutions(&run, &impact, unit);
+            let ends = restitutions.is_none();
+            found.push((run.counts, restitutions));
+            if ends {
+                break;
+            }
+        }
+        found
+    }
+
+    /// How far off the restitution may be, from coarser solutions of the same impact. One that ends otherwise says that nothing is
+    /// certain.
+    fn uncertainty(
+        &self,
+        known: &Restitutions,
+        coarser: &[(Counts, Option<Restitutions>)],
+        impact: &Impact,
+        lowered: &mut Lowered,
+        counts: &mut Counts,
+    ) -> f64 {
+        let tolerance = impact.settings.tolerance.min(LOOSEST);
+        let (mut spread, mut same_contacts) = (0.0f64, true);
+        for (counted, coarser) in coarser {
+            *counts += *counted;
+            let Some(coarser) = coarser else { return 1.0 };
+            spread = spread.max(known.difference(coarser));
             same_contacts &= known.flights.len() == coarser.flights.len();
         }
         if spread > tolerance || !same_contacts {

@@ -46,7 +46,7 @@ impl Scene {
 
     /// The same, with cached data.
     pub(crate) fn choose_and_judge(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
-        let mut found = Found::default();
+        let mut found = Found::new(kept.is_alone());
         let choice = self.choose_with(&mut found, kept)?;
         let mut cost = choice.answer.cost;
         let answer = self.judge_theory(choice.answer, &mut found, &mut cost)?;

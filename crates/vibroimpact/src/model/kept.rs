@@ -37,8 +37,8 @@ pub struct Kept {
     solvers: VecDeque<(Structure, Solver)>,
     /// Whether locations of impact hardly ever recur.
     passing: bool,
-    /// Whether motions are kept.
-    recording: bool,
+    /// Whether there is one scene alone: motions are kept, and impacts that do not depend on each other are solved at the same time.
+    alone: bool,
     /// The motion of the impact behind the last answer.
     motion: Option<(Structure, Recording)>,
 }
@@ -59,14 +59,15 @@ impl Kept {
         Kept { passing: true, ..Kept::default() }
     }
 
-    /// A cache for one scene that also keeps the motion of the impact behind its answer.
-    pub(crate) fn recording() -> Kept {
-        Kept { recording: true, ..Kept::default() }
+    /// A cache for one scene alone, whose motion is kept and whose impacts are solved at the same time where they do not depend on
+    /// each other.
+    pub(crate) fn alone() -> Kept {
+        Kept { alone: true, ..Kept::default() }
     }
 
-    /// Whether motions are kept.
-    pub(crate) fn is_recording(&self) -> bool {
-        self.recording
+    /// Whether there is one scene alone.
+    pub(crate) fn is_alone(&self) -> bool {
+        self.alone
     }
 
     /// Keeps the motion of the impact behind an answer, on this structure.
@@ -81,7 +82,7 @@ impl Kept {
 
     /// Empties the cache.
     pub(crate) fn clear(&mut self) {
-        *self = Kept { passing: self.passing, recording: self.recording, ..Kept::default() };
+        *self = Kept { passing: self.passing, alone: self.alone, ..Kept::default() };
     }
 
     /// A solver for a structure, with its cached tables.

@@ -30,6 +30,8 @@ mod text;
 mod theory;
 mod uncertainty;
 
+use std::ops::AddAssign;
+
 use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Counts;
@@ -142,6 +144,20 @@ pub struct Cost {
     pub mode_steps: u64,
     /// Panels of the integral equation of the infinite beam.
     pub panels: u64,
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Cost) {
+        self.solves += other.solves;
+        self.modes_computed += other.modes_computed;
+        self.contact_steps += other.contact_steps;
+        self.rejected_steps += other.rejected_steps;
+        self.newton_iterations += other.newton_iterations;
+        self.law_evaluations += other.law_evaluations;
+        self.flight_steps += other.flight_steps;
+        self.mode_steps += other.mode_steps;
+        self.panels += other.panels;
+    }
 }
 
 impl Cost {

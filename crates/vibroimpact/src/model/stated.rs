@@ -12,6 +12,7 @@
 //! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
 //! their number, and a small change from so few further modes may be an accident.
 
+use vibroimpact_sim::both;
 use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choice::Choice;
@@ -38,9 +39,19 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     let chosen = chooses_modes(scene);
     // without an approach the number of modes does not matter
     let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
-    let (solution, recording) = impact.solve_with(kept)?;
+    let (solution, beside) = if kept.is_alone() {
+        let compare = || {
+            let mut cost = Cost::default();
+            (compare(scene, &mut Kept::default(), &impact, &mut cost), cost)
+        };
+        let (beside, solved) = both(true, compare, || impact.solve_with(kept));
+        let (solution, recording) = solved?;
+        kept.keep(&impact.structure, recording);
+        (solution, Some(beside))
+    } else {
+        (impact.solve_with(kept)?.0, None)
+    };
     cost.add(&solution.counts, impact.structure.modes.len());
-    kept.keep(&impact.structure, recording);
     let count = impact.kept_modes();
     let reason = match scene.modes {
         Modes::Count(_) => format!("modal: the {count} modes stated"),
@@ -53,7 +64,14 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     let tolerance = impact.settings.tolerance;
     let solver = solution.restitution_uncertainty;
     let known = if solution.restitution.is_some() {
-        Known::new(scene, solver, left_out(scene, kept, &impact, &solution, cost)?)
+        let compared = match beside {
+            Some((compared, added)) => {
+                *cost += added;
+                compared?
+            }
+            None => compare(scene, kept, &impact, cost)?,
+        };
+        Known::new(scene, solver, compared.map(|compared| compared.left_out(&impact, &solution)))
     } else {
         Known::default()
     };
@@ -69,14 +87,48 @@ fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, 
     Ok(solution)
 }
 
-/// Effect of the truncated modes; the inner `Err` states why it is not known.
-fn left_out(
+/// The same impact with other modes.
+struct Compared {
+    richer: Other,
+    /// With fewer modes than that, unless the structure has no more.
+    fewer: Option<Other>,
+    /// As the richer one, with the compliance larger by its uncertainty.
+    softer: Option<Solution>,
+}
+
+/// The impact with another number of modes, or the impact itself.
+enum Other {
+    Itself,
+    Solved(Solution),
+}
+
+impl Other {
+    fn or<'a>(&'a self, itself: &'a Solution) -> &'a Solution {
+        match self {
+            Other::Itself => itself,
+            Other::Solved(other) => other,
+        }
+    }
+}
+
+impl Compared {
+    /// Effect of the truncated modes on the solution of the impact.
+    fn left_out(&self, impact: &Impact, solution: &Solution) -> f64 {
+        let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
+        let change = |other: &Solution| Change::between(other, self.richer.or(solution), momentum_n_s);
+        let further = self.fewer.as_ref().map_or(0.0, |fewer| CAUTION * change(fewer.or(solution)).size());
+        let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
+        (change(solution).restitution + further + softer).min(1.0)
+    }
+}
+
+/// Solves the impact with more modes; the inner `Err` states why the effect of the truncated modes is not known.
+fn compare(
     scene: &Scene,
     kept: &mut Kept,
     impact: &Impact,
-    solution: &Solution,
     cost: &mut Cost,
-) -> Result<Result<f64, String>, InvalidInput> {
+) -> Result<Result<Compared, String>, InvalidInput> {
     let (count, most) = match &scene.structure {
         Structure::Beam(_) => (impact.kept_modes(), usize::MAX),
         computed if computed.is_computed() => {
@@ -101,43 +153,34 @@ fn left_out(
         _ => fewer(more),
     };
     let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
+    let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
     let complete = |of: &Impact| of.remainder_modes == 0;
-    let mut with = |modes: usize| -> Result<(Solution, bool), InvalidInput> {
+    let mut with = |modes: usize| -> Result<(Other, bool), InvalidInput> {
         if whole && modes == count {
-            return Ok((solution.clone(), complete(impact)));
+            return Ok((Other::Itself, complete(impact)));
         }
-        let other = Impact {
-            settings: Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings },
-            ..posed(&with_modes(scene, count, modes), kept)?
-        };
-        Ok((solve(&other, kept, cost)?, complete(&other)))
+        let other = Impact { settings, ..posed(&with_modes(scene, count, modes), kept)? };
+        Ok((Other::Solved(solve(&other, kept, cost)?), complete(&other)))
     };
     let (richer, nothing_left) = with(more)?;
-    let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
-    let rest = if nothing_left {
-        0.0
-    } else {
-        let Ok((less, _)) = with(fewer) else {
-            return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
-        };
-        CAUTION * Change::between(&less, &richer, momentum_n_s).size()
+    if nothing_left {
+        return Ok(Ok(Compared { richer, fewer: None, softer: None }));
+    }
+    let Ok((fewer, _)) = with(fewer) else {
+        return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
     };
-    let (_, uncertain_m_n) = match &scene.structure {
-        Structure::Plate(_) if !nothing_left => {
-            scene.structure.static_compliance_with_uncertainty_m_n(scene.place())?
-        }
-        _ => (0.0, 0.0),
+    let uncertain_m_n = match &scene.structure {
+        Structure::Plate(_) => scene.structure.static_compliance_with_uncertainty_m_n(scene.place())?.1,
+        _ => 0.0,
     };
-    let rest = if uncertain_m_n > 0.0 {
+    let softer = if uncertain_m_n > 0.0 {
         let other = posed(&with_modes(scene, count, more), kept)?;
         let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
-        let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
-        let softer = solve(&Impact { structure, settings, ..other }, kept, cost)?;
-        rest + Change::between(&softer, &richer, momentum_n_s).size()
+        Some(solve(&Impact { structure, settings, ..other }, kept, cost)?)
     } else {
-        rest
+        None
     };
-    Ok(Ok((Change::between(solution, &richer, momentum_n_s).restitution + rest).min(1.0)))
+    Ok(Ok(Compared { richer, fewer: Some(fewer), softer }))
 }
 
 fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {

@@ -12,6 +12,7 @@
 //! many more than are stated. They are solved once at a loose tolerance, so that this costs no more than a few times the impact
 //! itself. If a scene does not state the theory, the cheaper one is used if the two differ by less than half the tolerance.
 
+use vibroimpact_sim::both;
 use vibroimpact_sim::modal::Settings;
 
 use super::stated::needed;
@@ -38,6 +39,18 @@ pub(super) struct Found {
     needed: Vec<(BeamTheory, Option<usize>)>,
     /// Restitutions, with the number of modes.
     restitutions: Vec<(Beam, usize, Option<f64>)>,
+    /// Whether two impacts are solved at the same time.
+    concurrent: bool,
+}
+
+/// The restitution on one beam.
+struct Solved {
+    theory: BeamTheory,
+    needed: Option<usize>,
+    beam: Beam,
+    modes: usize,
+    restitution: Option<f64>,
+    cost: Cost,
 }
 
 /// Restitutions of one impact by both theories.
@@ -65,12 +78,27 @@ impl Theories {
         beams.truncate(if answer.is_some() { 4 } else { 2 });
         let least = answer.map_or(0, |answer| answer.modes);
         let mut restitutions = Vec::new();
-        for beam in beams {
-            match found.restitution(scene, beam, least, cost)? {
-                Some(restitution) => restitutions.push(restitution),
-                None => return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned())),
+        for pair in beams.chunks(2) {
+            let known = |beam: &Beam| found.known(scene, beam, least);
+            let concurrent = found.concurrent && pair.iter().all(|beam| known(beam).is_none());
+            let solve = |beam: &Beam| match known(beam) {
+                Some(restitution) => Ok((restitution, None)),
+                None => found.solve(scene, beam, least).map(|solved| (solved.restitution, Some(solved))),
+            };
+            let second = || pair.get(1).map(solve);
+            let (second, first) = both(concurrent, second, || solve(&pair[0]));
+            for solved in std::iter::once(first).chain(second) {
+                let (restitution, solved) = solved?;
+                if let Some(solved) = solved {
+                    *cost += solved.cost;
+                    found.add(solved);
+                }
+                restitutions.push(restitution);
             }
         }
+        let Some(restitutions) = restitutions.into_iter().collect::<Option<Vec<f64>>>() else {
+            return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned()));
+        };
         Ok(match restitutions[..] {
             [timoshenko, euler_bernoulli, ref others @ ..] => {
                 Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
@@ -91,46 +119,66 @@ impl Theories {
 }
 
 impl Found {
-    /// The restitution of the scene on this beam with the expected number of modes for the tolerance, with a lower limit, and
-    /// remainder modes.
-    fn restitution(
-        &mut self,
-        scene: &Scene,
-        beam: Beam,
-        least: usize,
-        cost: &mut Cost,
-    ) -> Result<Option<f64>, InvalidInput> {
+    /// Nothing yet; with `concurrent`, two impacts will be solved at the same time.
+    pub fn new(concurrent: bool) -> Found {
+        Found { concurrent, ..Found::default() }
+    }
+
+    /// The restitution of the scene on this beam, if it is known.
+    fn known(&self, scene: &Scene, beam: &Beam, least: usize) -> Option<Option<f64>> {
+        let theory = theory_of(&on(scene, beam));
+        let (_, needed) = self.needed.iter().find(|(known, _)| *known == theory)?;
+        let count = count(scene, *needed, least);
+        let known = self.restitutions.iter().find(|(known, modes, _)| known == beam && *modes == count);
+        known.map(|(.., restitution)| *restitution)
+    }
+
+    /// Solves the scene on this beam with the expected number of modes for the tolerance, with a lower limit, and remainder modes.
+    fn solve(&self, scene: &Scene, beam: &Beam, least: usize) -> Result<Solved, InvalidInput> {
         // the modes of this beam must not replace those that are cached for the next scene
-        let kept = &mut Kept::default();
-        let scene = Scene { structure: beam.clone().into(), ..scene.clone() };
-        let count = match (self.needed(&scene, kept, cost)?, scene.modes.count()) {
-            (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
-            (Some(needed), None) => (RICHER * needed).max(least),
-            (None, stated) => stated.unwrap_or_default(),
+        let (kept, mut cost) = (&mut Kept::default(), Cost::default());
+        let scene = on(scene, beam);
+        let theory = theory_of(&scene);
+        let needed = match self.needed.iter().find(|(known, _)| *known == theory) {
+            Some((_, needed)) => *needed,
+            None => {
+                let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
+                needed(&scene, tolerance, kept, &mut cost)?
+            }
         };
-        let known = self.restitutions.iter().find(|(known, modes, _)| *known == beam && *modes == count);
-        if let Some((.., restitution)) = known {
-            return Ok(*restitution);
-        }
-        let scene = Scene { modes: Modes::Count(count), residual_compliance: Some(true), ..scene };
-        let impact = scene.impact_of(Some(count), kept)?;
+        let modes = count(&scene, needed, least);
+        let scene = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene };
+        let impact = scene.impact_of(Some(modes), kept)?;
         let Impact { structure, striker, law, start, settings, .. } = &impact;
         let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..*settings };
         let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
         cost.add(&solution.counts, structure.modes.len());
-        self.restitutions.push((beam, count, solution.restitution));
-        Ok(solution.restitution)
+        Ok(Solved { theory, needed, beam: beam.clone(), modes, restitution: solution.restitution, cost })
     }
 
-    fn needed(&mut self, scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usize>, InvalidInput> {
-        let theory = scene.structure.bending_theory().unwrap_or(BeamTheory::Auto);
-        if let Some((_, needed)) = self.needed.iter().find(|(known, _)| *known == theory) {
-            return Ok(*needed);
+    fn add(&mut self, Solved { theory, needed, beam, modes, restitution, .. }: Solved) {
+        if self.needed.iter().all(|(known, _)| *known != theory) {
+            self.needed.push((theory, needed));
         }
-        let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
-        let needed = needed(scene, tolerance, kept, cost)?;
-        self.needed.push((theory, needed));
-        Ok(needed)
+        self.restitutions.push((beam, modes, restitution));
+    }
+}
+
+/// The scene on this beam.
+fn on(scene: &Scene, beam: &Beam) -> Scene {
+    Scene { structure: beam.clone().into(), ..scene.clone() }
+}
+
+fn theory_of(scene: &Scene) -> BeamTheory {
+    scene.structure.bending_theory().unwrap_or(BeamTheory::Auto)
+}
+
+/// The number of modes with which the theories are compared.
+fn count(scene: &Scene, needed: Option<usize>, least: usize) -> usize {
+    match (needed, scene.modes.count()) {
+        (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
+        (Some(needed), None) => (RICHER * needed).max(least),
+        (None, stated) => stated.unwrap_or_default(),
     }
 }
 
