@@ -122,7 +122,7 @@ pub fn orbit(
     };
     let (found, signals) = py.detach(|| {
         until_signal(|stop| {
-            let needed = || InvalidInput::missing("to", "needed beside over: a finite number");
+            let needed = || InvalidInput::missing("to", "a finite number, because over needs it");
             let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step, doublings };
             let scene = scene.bodies()?;
             let branch = scene.orbit_branch(&over, &settings, stop)?;

@@ -49,7 +49,7 @@ pub fn emoc_restitution<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (mass_kg, shapes) = (mass_kg.as_array().to_owned(), shapes.as_array().to_owned());
     let Some((_, places)) = shapes.shape().split_last() else {
-        let allowed = "an array whose last axis holds the modes";
+        let allowed = "an array whose last axis contains the modes";
         return Err(Fault::from(InvalidInput::new("shapes", "a number", allowed)).into());
     };
     let common = py
@@ -109,7 +109,7 @@ pub fn fit<'py>(
     for (field, values) in [("location_m", &location_m), ("restitution", &restitution)] {
         if values.len() != mass_kg.len() {
             let value = format!("{} numbers", values.len());
-            let allowed = format!("as many as of mass_kg, {}", mass_kg.len());
+            let allowed = format!("as long as mass_kg, which has {}", mass_kg.len());
             return Err(Fault::from(InvalidInput::new(field, value, allowed)).into());
         }
     }

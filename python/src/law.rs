@@ -30,7 +30,7 @@ pub fn law<'py>(
     let kind = law.map(|name| {
         Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
             let names = Kind::ALL.map(Kind::name).join(", ");
-            Fault::from(InvalidInput::new("law", name, names))
+            Fault::from(InvalidInput::new("law", name, format!("one of {names}")))
         })
     });
     let law = kind.transpose()?;

@@ -77,8 +77,8 @@ def to_csv(table: SupportsKeysAndGetItem[str, Any]) -> str:
     for name, length in lengths.items():
         longest = max(lengths.values())
         if length != longest:
-            allowed = f"as many as in the longest column, {longest}"
-            message = f"column {name} = {length} values is not allowed: {allowed}"
+            allowed = f"as long as the longest column, which has {longest}"
+            message = f"column {name} = {length} values is not allowed; it must be {allowed}"
             raise InvalidInput(message, f"column {name}", f"{length} values", allowed)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

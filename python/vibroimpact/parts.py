@@ -117,7 +117,7 @@ class Segment(Part):
 class Point(Part):
     """A point of a structure that is given by its modes.
 
-    ``shape``: Shapes at the point: mass-normalised (kg^-1/2), or as they go with ``modal_mass_kg``.
+    ``shape``: Shapes at the point: mass-normalised (kg^-1/2), or normalised to ``modal_mass_kg``.
     ``residual_compliance_m_n``: Static compliance (m/N) of the modes beyond the list alone, in place of
         ``static_compliance_m_n``. It stays the same if the listed modes vary.
     ``static_compliance_m_n``: Static compliance at the point (m/N) of the whole elastic structure, modes beyond the list
@@ -131,7 +131,7 @@ class Point(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class MovingMode(Part):
-    """The motion of one mode, told at a location where it can be seen.
+    """The motion of one mode, given at a location where the mode moves.
 
     ``mode``: Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
     ``displacement_m``: Displacement there (m); 0 when left out.
@@ -150,12 +150,12 @@ class MovingMode(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Start(Part):
-    """How the structure moves at the start, and how far away the striker then is. Displacements and velocities are positive
-    towards the striker. What is given adds up.
+    """Motion of the structure at the start, and distance of the striker. Displacements and velocities are positive towards
+    the striker. Motions that are given in different fields are added.
 
     ``amplitude_m_kg0_5``: Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
     ``gap_m``: Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
-    ``moving_modes``: Modes given by how they move at a location.
+    ``moving_modes``: Modes whose motion is given at a location.
     ``rate_m_kg0_5_s``: Their rates (m kg^1/2 / s); those of the rest are 0.
     """
 
@@ -172,7 +172,7 @@ class Striker(Part):
     ``speed_m_s``: Speed towards the structure (m/s).
     ``density_kg_m3``: Density of a solid sphere (kg/m^3), in place of its mass.
     ``immovable``: Whether the striker is a stop that never moves, of infinite mass; ``false`` when left out. Its speed is
-        then 0: the structure comes to it, as ``start`` tells.
+        then 0, and ``start`` states the motion of the structure towards it.
     ``mass_kg``: Mass (kg), or ``density_kg_m3`` and ``radius_m`` in its place.
     ``material``: Material, in place of its numbers; a number beside it takes precedence
     ``radius_m``: Radius of curvature at the point of contact (m); needed where the contact's stiffness comes from
@@ -256,7 +256,7 @@ class Plate(Part):
     ``material``: Material, in place of its numbers; a number beside it takes precedence
     ``poissons_ratio``: Poisson's ratio.
     ``shear_coefficient``: Shear coefficient of Mindlin's theory; 5/(6 - Poisson's ratio) when left out.
-    ``theory``: By which theory the plate bends; Kirchhoff's when left out.
+    ``theory``: The theory of bending; Kirchhoff's when left out.
     ``youngs_modulus_pa``: Young's modulus (Pa).
     """
 
@@ -281,12 +281,12 @@ class Modal(Part):
 
     ``omega_rad_s``: Angular frequencies (rad/s); 0 for a rigid-body mode.
     ``damping_ratios``: Damping ratios, one for each mode; all 0 when left out.
-    ``modal_mass_kg``: Modal masses that go with the shapes (kg), one for each mode. When left out, shapes are mass-
-        normalised: 1 kg each.
+    ``modal_mass_kg``: Modal masses to which the shapes are normalised (kg), one for each mode. When left out, shapes are
+        mass-normalised: 1 kg each.
     ``points``: Points of the structure by their names, in place of ``shape_at_location`` and the compliance there.
     ``residual_compliance_m_n``: Static compliance (m/N) of the modes beyond the list alone, in place of
         ``static_compliance_m_n``. It stays the same if the listed modes vary.
-    ``shape_at_location``: Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with ``modal_mass_kg``.
+    ``shape_at_location``: Shapes at the point of impact: mass-normalised (kg^-1/2), or normalised to ``modal_mass_kg``.
     ``static_compliance_m_n``: Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond
         the list included; needed for ``"residual_compliance": true`` only.
     """
@@ -304,9 +304,9 @@ class Modal(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ModesFile(Part):
-    """The same from a table of comma-separated values that stands beside the scene.
+    """The same from a table of comma-separated values in the folder of the scene.
 
-    ``file``: Path of the table, relative to the scene file; the table stands in the same folder or below it.
+    ``file``: Path of the table, relative to the scene file; the table is in the same folder or below it.
     ``static_compliances_m_n``: Static compliances (m/N) of the whole elastic structure at points of the table, by their
         names; needed for ``"residual_compliance": true`` only.
     """
@@ -379,8 +379,8 @@ class DroppedRod(Part):
     ``length_m``: Length (m).
     ``diameter_m``: Diameter (m); the ends are hemispheres of half of it in radius.
     ``inclination_deg``: Angle between rod and floor (degrees): 0 lies, 90 stands upright.
-    ``axial_modes``: Axial modes; 20 when left out.
-    ``bending_modes``: Bending modes; 40 when left out.
+    ``axial_modes``: Number of axial modes; 20 when left out.
+    ``bending_modes``: Number of bending modes; 40 when left out.
     ``damping_ratio``: Damping ratio of the elastic modes; 0 when left out.
     ``density_kg_m3``: Density (kg/m^3).
     ``material``: Material, in place of its numbers; a number beside it takes precedence
@@ -686,25 +686,24 @@ Contact = Union[
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Scene(Part):
-    """One impact: what is struck, by what, how they touch, where.
+    """One impact: the structure, the striker, the law of their contact, and the location.
 
-    ``structure``: What is struck.
-    ``striker``: What strikes it.
+    ``structure``: The struck structure.
+    ``striker``: The striker.
     ``contact``: The law of the contact.
     ``description``: A text for the reader; may be left out.
     ``location``: Name of the point that is struck. Required for a modal structure with named points; other structures have
         none.
     ``location_m``: Location of the impact (m): from the left end of a beam or string; on a plate two numbers, ``[x, y]``
         from a corner. Required for these; other structures have none.
-    ``model``: Which model answers; the program's choice when left out.
-    ``modes``: Modes retained, from the lowest: a number (0 is an immovable structure), or the program's choice when left
-        out.
+    ``model``: The model, see; chosen by the program when left out.
+    ``modes``: Modes retained, from the lowest: a number (0 is an immovable structure); chosen by the program when left out.
     ``residual_compliance``: Whether remainder modes represent the truncated modes, so that the restitution converges in the
         number of modes. When left out: ``true`` where the program chooses the modes (and knows the static compliance),
         ``false`` where their number is given.
     ``start``: Motion of the structure before the impact; at rest and touched by the striker when left out.
-    ``tolerance``: Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses
-        the modes; 1e-9, that of the solver alone, where the modes are given.
+    ``tolerance``: Requested accuracy of the restitution. When left out: 1e-3, which includes truncation, where the program
+        chooses the modes; 1e-9, of the solver alone, where the modes are given.
     ``yield_strength_pa``: Yield strength of the softer body (Pa), against which the pressure in the contact is judged; it
         changes no result.
     """

@@ -42,7 +42,7 @@ pub struct Wanted {
 /// Runs the study and returns its table.
 pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     if !wanted.draws.is_power_of_two() || wanted.draws < 2048 {
-        let fault = format!("--draws {} is not allowed: a power of two of at least 2048", wanted.draws);
+        let fault = format!("--draws {} is not allowed; it must be a power of two of at least 2048", wanted.draws);
         return Err(BadInput(fault).into());
     }
     let mut table = "| ball, radius | contacts | draws | standard error of the mean | gain, linear | gain, quadratic | gain for 5, 50, 95 % \

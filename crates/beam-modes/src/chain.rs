@@ -21,8 +21,9 @@ const SAME_PLACE: f64 = 1e-12;
 /// Largest number of spans into which a beam is divided.
 const MOST_SPANS: f64 = 5000.0;
 const BESIDE_BENDING: &str =
-    "a smaller value: with this one the beam would have to be divided into more than 5000 segments";
-const EULER_BERNOULLI: &str = "0 on a Timoshenko beam: axial force and foundation need Euler-Bernoulli's theory";
+    "a smaller value, because with this one the beam would have to be divided into more than 5000 segments";
+const EULER_BERNOULLI: &str =
+    "0 on a Timoshenko beam, because axial force and foundation need Euler-Bernoulli's theory";
 
 impl Chain {
     pub fn of(system: &BeamSystem) -> Result<Self, InvalidInput> {
@@ -47,7 +48,7 @@ impl Chain {
             if value.is_finite() && (value * unit).abs() <= 1e18 {
                 Ok(value * unit)
             } else {
-                let allowed = "a finite number, at most 1e18 times the bending stiffness of the beam";
+                let allowed = "a finite number of at most 1e18 times the bending stiffness of the beam";
                 Err(InvalidInput::new(field, value, allowed))
             }
         };
@@ -59,7 +60,11 @@ impl Chain {
             }
         }
         if foundation < 0.0 {
-            return Err(InvalidInput::new("foundation_n_m2", system.foundation_n_m2, "a finite number, at least 0"));
+            return Err(InvalidInput::new(
+                "foundation_n_m2",
+                system.foundation_n_m2,
+                "a finite number not less than 0",
+            ));
         }
         spans.iter_mut().for_each(|span| (span.tension, span.foundation) = (tension, foundation));
 
@@ -72,7 +77,7 @@ impl Chain {
                 if value >= 0.0 {
                     Ok(value)
                 } else {
-                    Err(attached(InvalidInput::new(field, value / unit, "a finite number, at least 0")))
+                    Err(attached(InvalidInput::new(field, value / unit, "a finite number not less than 0")))
                 }
             };
             let node = Node {

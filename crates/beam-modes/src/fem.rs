@@ -56,7 +56,7 @@ impl Model {
         beam.checked()?;
         let elements = beam.segments.len().saturating_mul(elements_per_segment);
         if !(1..=2000).contains(&elements) {
-            let allowed = "at least 1, and at most 2000 elements in all";
+            let allowed = "at least 1, with at most 2000 elements in the whole beam";
             return Err(InvalidInput::new("elements_per_segment", elements_per_segment, allowed));
         }
         let full = 2 * (elements + 1);
@@ -116,8 +116,13 @@ impl Model {
     /// [`InvalidInput`] if segments differ so much that the mass matrix is singular to rounding.
     pub fn modes(&self) -> Result<ModelModes, InvalidInput> {
         let n = self.dofs.len();
-        let unsolved =
-            || InvalidInput::new("segments", "as given", "contrasts small enough for a well-conditioned mass matrix");
+        let unsolved = || {
+            InvalidInput::new(
+                "segments",
+                "as given",
+                "a list without contrasts so large that the mass matrix is ill-conditioned",
+            )
+        };
         let mut omega_rad_s = Vec::with_capacity(n);
         let mut nodal = Vec::with_capacity(n);
         if n > 0 {
@@ -174,7 +179,7 @@ impl ModelModes {
         let length_m = self.nodes_m.last().copied().unwrap_or(0.0);
         let x_m = require_on("x_m", x_m, length_m)?;
         let Some(nodal) = self.nodal.get(k) else {
-            return Err(InvalidInput::new("k", k, "the number of a mode, from 0"));
+            return Err(InvalidInput::new("k", k, "the index of a mode, counted from 0"));
         };
         let right = self.nodes_m.partition_point(|&node| node <= x_m).clamp(1, nodal.len() - 1);
         let h = self.nodes_m[right] - self.nodes_m[right - 1];

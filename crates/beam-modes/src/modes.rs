@@ -29,7 +29,11 @@ pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInp
     const MOST: usize = 100_000;
     const MOST_PIECES: usize = 20_000_000;
     if count > MOST || count.saturating_mul(spans) > MOST_PIECES {
-        return Err(InvalidInput::new("count", count, "at most 100000, and at most 20 million times segments"));
+        return Err(InvalidInput::new(
+            "count",
+            count,
+            "at most 100000, and at most 20 million divided by the number of segments",
+        ));
     }
     Ok(())
 }
@@ -168,7 +172,7 @@ impl Modes {
 
     fn quantity(&self, order: i32, k: usize, x_m: f64, value: fn(&Piece, f64) -> f64) -> Result<f64, InvalidInput> {
         if k >= self.len() {
-            return Err(InvalidInput::new("k", k, "the number of a mode, from 0 to len() - 1"));
+            return Err(InvalidInput::new("k", k, "the index of a mode, from 0 to len() - 1"));
         }
         let (span, x) = self.place(x_m)?;
         Ok(self.unit(order) * value(&self.pieces[k * self.spans.len() + span], x))

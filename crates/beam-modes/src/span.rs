@@ -56,16 +56,17 @@ impl Units {
 /// Largest ratio between the segments' lengths, rigidities or masses per length.
 const MAX_CONTRAST: f64 = 1e12;
 const CONTRAST: &str = "within a factor 1e12 of the same property of every other segment";
-const SCALE: &str = "between 1e-60 and 1e60";
+const SCALE: &str = "a number between 1e-60 and 1e60";
 /// The property that an extreme chain of segments does not have.
-pub(crate) const RESOLVABLE: &str = "contrasts and sizes for which double precision resolves the modes";
+pub(crate) const RESOLVABLE: &str =
+    "a list without contrasts and sizes so large that double precision cannot resolve the modes";
 
 /// Checks segments `[length, rigidity, mass per length]` and makes them dimensionless.
 ///
 /// Equal neighbours are merged: a uniform beam is one span, however it was divided.
 pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<Span>, Units), InvalidInput> {
     let Some(first) = raw.first() else {
-        return Err(InvalidInput::new("segments", "[]", "at least one segment"));
+        return Err(InvalidInput::new("segments", "[]", "a list of at least one segment"));
     };
     for (property, name) in names.into_iter().enumerate() {
         let (mut low, mut high) = (first[property], first[property]);
@@ -93,7 +94,11 @@ pub(crate) fn nondimensional_beam(
     let bare = nondimensional(&raw, ["length_m", "flexural_rigidity_n_m2", "mass_per_length_kg_m"])?;
     let Some(shear) = shear else { return Ok(bare) };
     if shear.len() != raw.len() {
-        return Err(InvalidInput::new("shear", format!("{} sections", shear.len()), "one section for each segment"));
+        return Err(InvalidInput::new(
+            "shear",
+            format!("{} sections", shear.len()),
+            "a list with one section for each segment",
+        ));
     }
     let Units { length_m, rigidity, mass_per_length_kg_m } = bare.1;
     let mut sections = Vec::with_capacity(shear.len());
@@ -117,7 +122,8 @@ pub(crate) fn nondimensional_beam(
 const SHEAR_MOST: f64 = 1e6;
 const SHEAR_RANGE: &str =
     "at least 1e-6 times the flexural rigidity of the first segment over the square of the length";
-const ROTARY_RANGE: &str = "0 up to 1e6 times the mass per length of the first segment times the square of the length";
+const ROTARY_RANGE: &str =
+    "from 0 to 1e6 times the mass per length of the first segment times the square of the length";
 
 /// Merges equal neighbours; `section` contains the properties of a segment other than length, rigidity and mass.
 fn merged(raw: &[[f64; 3]], section: impl Fn(usize) -> [f64; 2]) -> (Vec<Span>, Units) {

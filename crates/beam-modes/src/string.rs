@@ -58,7 +58,7 @@ impl TautString {
         if sizes.iter().all(|size| (1e-150..1e150).contains(size)) {
             Ok(())
         } else {
-            let allowed = "dimensions for which double precision can represent the modes";
+            let allowed = "part of a string whose modes double precision can represent";
             Err(InvalidInput::new("tension_n", self.tension_n, allowed))
         }
     }
@@ -78,7 +78,11 @@ impl TautString {
         require_count(count, 1)?;
         let omega_rad_s: Vec<f64> = (1..=count).map(|n| self.omega_rad_s(n)).collect();
         if omega_rad_s.iter().any(|omega| !omega.is_finite()) {
-            return Err(InvalidInput::new("flexural_rigidity_n_m2", self.flexural_rigidity_n_m2, "a smaller rigidity"));
+            return Err(InvalidInput::new(
+                "flexural_rigidity_n_m2",
+                self.flexural_rigidity_n_m2,
+                "smaller, because with this rigidity double precision cannot resolve the modes",
+            ));
         }
         Ok(TautStringModes { string: *self, omega_rad_s })
     }

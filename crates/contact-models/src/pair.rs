@@ -42,7 +42,8 @@ impl Body {
     /// `1 / R` (1/m), zero for a flat.
     fn curvature_per_m(&self) -> Result<f64, InvalidInput> {
         if self.radius_m != f64::INFINITY {
-            let allowed = "a radius other than 0, positive for a ball, infinite for a flat, negative for a seat";
+            let allowed =
+                "a radius other than 0: positive for a ball, infinite for a flat surface, negative for a concave seat";
             let holds = self.radius_m.abs() >= 1.0 / LARGEST && self.radius_m.abs() <= LARGEST;
             InvalidInput::unless(holds, "radius_m", self.radius_m, allowed)?;
         }
@@ -56,7 +57,12 @@ impl Body {
 /// A modulus that is not positive, a Poisson's ratio outside `(-1, 0.5]`, or two rigid bodies.
 pub fn effective_modulus_pa(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
     let modulus = 1.0 / (first.compliance_per_pa()? + second.compliance_per_pa()?);
-    InvalidInput::unless(modulus.is_finite(), "youngs_modulus_pa", modulus, "at most one rigid body in a pair")?;
+    InvalidInput::unless(
+        modulus.is_finite(),
+        "youngs_modulus_pa",
+        modulus,
+        "finite for at least one of the two bodies",
+    )?;
     Ok(modulus)
 }
 
@@ -68,7 +74,7 @@ pub fn effective_modulus_pa(first: &Body, second: &Body) -> Result<f64, InvalidI
 pub fn effective_radius_m(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
     let radius = 1.0 / (first.curvature_per_m()? + second.curvature_per_m()?);
     let holds = radius > 0.0 && radius <= LARGEST;
-    let allowed = "1/R1 + 1/R2 greater than 0, so that the bodies meet at a point";
+    let allowed = "such that 1/R1 + 1/R2 is greater than 0, so that the bodies meet at a point";
     InvalidInput::unless(holds, "radius_m", radius, allowed)?;
     Ok(radius)
 }

@@ -104,10 +104,10 @@ pub fn trace(
     let mut previous: Option<f64> = None;
     for &end in times_s {
         let increases = end.is_finite() && previous.is_none_or(|t| t < end);
-        InvalidInput::unless(increases, "times_s", end, "finite times that increase")?;
+        InvalidInput::unless(increases, "times_s", end, "finite and greater than the time before")?;
         let (xi, rate) = motion(end);
-        InvalidInput::unless(xi.is_finite(), "compression_m", xi, "a motion with finite compression")?;
-        InvalidInput::unless(rate.is_finite(), "rate_m_s", rate, "a motion with finite rate")?;
+        InvalidInput::unless(xi.is_finite(), "compression_m", xi, "finite at every time")?;
+        InvalidInput::unless(rate.is_finite(), "rate_m_s", rate, "finite at every time")?;
         let mut start = previous.unwrap_or(end);
         for _ in 0..MOST_EVENTS {
             let met = first_met(&state.boundaries(law), start, end, &motion);

@@ -79,7 +79,7 @@ pub fn reduced_mass_kg(first_kg: f64, second_kg: f64) -> Result<f64, InvalidInpu
         }
     }
     let one_moves = !(immovable(first_kg) && immovable(second_kg));
-    InvalidInput::unless(one_moves, "mass_kg", second_kg, "a finite mass of at least one body")?;
+    InvalidInput::unless(one_moves, "mass_kg", second_kg, "finite for at least one of the two bodies")?;
     Ok(1.0 / (1.0 / first_kg + 1.0 / second_kg))
 }
 

@@ -58,7 +58,7 @@ fn parameters_of_every_law() {
     }
     assert!(Power::new(1.0, 6.01).is_err() && Felt::new(1.0, 6.01, 1.0).is_err());
     let message = Viscous::new(1.0, -0.1).unwrap_err().to_string();
-    assert_eq!(message, "damping_s_m = -0.1 is not allowed: a number from 0 to 1e30");
+    assert_eq!(message, "damping_s_m = -0.1 is not allowed; it must be a number from 0 to 1e30");
 }
 
 #[test]

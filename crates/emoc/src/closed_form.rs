@@ -18,7 +18,7 @@ pub struct Coefficients<T = f64> {
     pub beta1: T,
 }
 
-/// Which of the two inequalities determine the rebound.
+/// Which of the two inequalities determines the rebound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -55,7 +55,7 @@ pub struct Rebound<T = f64> {
     /// `y = -sum phi_k a_k' / u`: recoil speed of the structure's point over `u`. It equals `ebar - e`, computed without
     /// cancellation.
     pub recoil: T,
-    /// Which inequalities determine it.
+    /// Which of the inequalities determines it.
     pub branch: Branch,
     /// `1/(1+Z) - (beta_0+beta_1)/(1+beta_0)`: not negative on the basic branch, negative on the outward one, and zero at the
     /// kink, where the restitution has a different derivative on each side.
@@ -81,12 +81,7 @@ impl<T: Real> Rebound<T> {
     /// An error if the lists differ in length or a number is not finite.
     pub fn modal_rates(&self, speed_m_s: T, phi: &[T], rates: &mut [T]) -> Result<(), InvalidInput> {
         require_non_negative("speed_m_s", speed_m_s)?;
-        require(
-            phi.len() == rates.len(),
-            ["rates", "len()"],
-            T::from_count(rates.len()),
-            "as many rates as mode shapes",
-        )?;
+        require(phi.len() == rates.len(), ["rates", "len()"], T::from_count(rates.len()), "the number of mode shapes")?;
         let sum = sum_of_squares(phi)?;
         let s = if sum > T::ZERO { self.recoil * speed_m_s / sum } else { T::ZERO };
         for (rate, &phi_k) in rates.iter_mut().zip(phi) {
@@ -199,7 +194,7 @@ pub(crate) fn sum_of_squares<T: Real>(phi: &[T]) -> Result<T, InvalidInput> {
         sum = sum + phi_k * phi_k;
         // False both for NaN and for overflow.
         let finite = sum <= T::MAX;
-        require(finite, ("phi", index), phi_k, "finite mode shapes whose sum of squares is finite")?;
+        require(finite, ("phi", index), phi_k, "a finite mode shape that leaves the sum of squares finite")?;
     }
     Ok(sum)
 }

@@ -14,7 +14,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Accepts a list of `length` finite numbers, none so large that products of two of them overflow.
 pub(crate) fn require_finite(field: &'static str, values: &[f64], length: usize) -> Result<(), InvalidInput> {
     if values.len() != length {
-        let allowed = "a length that fits the number of contact coordinates (or velocities)";
+        let allowed = "as long as the number of contact coordinates or velocities requires";
         return Err(InvalidInput::new(field, values.len(), allowed));
     }
     match values.iter().position(|value| value.is_nan() || value.abs() > 1e100) {
@@ -32,7 +32,7 @@ pub(crate) fn require_symmetric(field: &'static str, a: &[f64], n: usize) -> Res
     for i in 0..n {
         for j in 0..i {
             if (a[i * n + j] - a[j * n + i]).abs() > ROUNDING * largest {
-                let allowed = "a symmetric matrix";
+                let allowed = "equal to the entry opposite to it, because the matrix is symmetric";
                 return Err(InvalidInput::new((field, i * n + j), a[i * n + j], allowed));
             }
         }
@@ -48,7 +48,7 @@ pub(crate) fn factor_positive_definite(field: &'static str, a: &[f64], n: usize)
         for k in 0..j {
             d -= f[j * n + k] * f[j * n + k] * f[k * n + k];
         }
-        require(d > f64::EPSILON * a[j * n + j].abs(), field, d, "a positive definite matrix")?;
+        require(d > f64::EPSILON * a[j * n + j].abs(), field, d, "a pivot of a positive definite matrix")?;
         f[j * n + j] = d;
         for i in j + 1..n {
             let mut l = f[i * n + j];
@@ -115,7 +115,7 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
     for &i in &left {
         for &j in &left {
             if w[i * n + j].abs() > 100.0 * ROUNDING * largest {
-                let allowed = "a positive semidefinite matrix";
+                let allowed = "an entry of a positive semidefinite matrix";
                 let field = "inverse_inertia_per_kg";
                 return Err(InvalidInput::new((field, i * n + j), w[i * n + j], allowed));
             }
@@ -123,7 +123,7 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
         // With `W = B B^T` and `v = B u`, `v_i^2` is at most `W_ii u.u`, however small.
         let unexplained = v[i] * v[i] > 100.0 * w[i * n + i].max(0.0) * energy;
         if v[i].abs() > 100.0 * ROUNDING * fastest && unexplained {
-            let allowed = "velocities in the range of inverse_inertia_per_kg (an immovable body does not move)";
+            let allowed = "in the range of the matrix inverse_inertia_per_kg, because an immovable body does not move";
             return Err(InvalidInput::new(("velocity_m_s", i), v[i], allowed));
         }
     }

@@ -146,7 +146,7 @@ impl MovingImpact<'_> {
         self.coefficients.validate()?;
         require_positive("mass_kg", self.mass_kg)?;
         let count = self.rates.len();
-        require(count == self.phi.len(), ["rates", "len()"], count as f64, "as many rates as mode shapes")?;
+        require(count == self.phi.len(), ["rates", "len()"], count as f64, "the number of mode shapes")?;
         let allowed = "a number from -1e60 to 1e60";
         let inverse = 1.0 / self.mass_kg;
         require(self.mass_kg.max(inverse) <= LARGEST, "mass_kg", self.mass_kg, "a number from 1e-60 to 1e60")?;

@@ -154,7 +154,12 @@ impl Problem {
                 .map_err(|error| within(error.within("friction")))?;
             if let Friction::Spatial { facets, .. } = contact.friction {
                 let holds = (3..=64).contains(&facets);
-                InvalidInput::unless(holds, ("contacts", index, ["friction", "facets"]), facets, "3 to 64 facets")?;
+                InvalidInput::unless(
+                    holds,
+                    ("contacts", index, ["friction", "facets"]),
+                    facets,
+                    "a number from 3 to 64",
+                )?;
             }
         }
         let d = self.coordinates();

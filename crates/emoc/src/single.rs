@@ -97,7 +97,7 @@ impl SingleImpact<'_> {
         require_positive("mass_kg", self.mass_kg)?;
         self.coefficients.validate()?;
         let z = self.mass_kg * sum_of_squares(self.phi)?;
-        let allowed = "a moderated mass ratio up to 1e13";
+        let allowed = "a moderated mass ratio of at most 1e13";
         if z <= 1e13 { Ok(z) } else { Err(InvalidInput::new("z", z, allowed)) }
     }
 

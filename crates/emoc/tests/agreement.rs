@@ -130,6 +130,6 @@ fn bad_input_is_reported() {
     let impact = SingleImpact { mass_kg: 1.0, phi: &[1.0, f64::NAN], coefficients: good };
     assert_eq!(
         impact.solve_full().unwrap_err().to_string(),
-        "phi[1] = NaN is not allowed: finite mode shapes whose sum of squares is finite"
+        "phi[1] = NaN is not allowed; it must be a finite mode shape that leaves the sum of squares finite"
     );
 }

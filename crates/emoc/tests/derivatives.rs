@@ -125,7 +125,7 @@ fn extreme_numbers_give_numbers_or_errors() {
         assert!(newton_restitution(bad, 1.0).is_err() && newton_restitution(0.5, bad).is_err());
     }
     let error = Impact::new(-0.5, &site).unwrap_err();
-    assert_eq!(error.to_string(), "mass_kg = -0.5 is not allowed: a finite number greater than 0");
+    assert_eq!(error.to_string(), "mass_kg = -0.5 is not allowed; it must be a finite number greater than 0");
 }
 
 #[test]

@@ -50,11 +50,12 @@ impl Information {
     /// ```
     pub fn of(rows: &[f64], n: usize) -> Result<Information, InvalidInput> {
         if n == 0 || !rows.len().is_multiple_of(n) {
-            let allowed = "rows with a number for each coordinate, and at least one coordinate";
+            let allowed =
+                "a number of entries that gives each row one number for each coordinate, with at least one coordinate";
             return Err(InvalidInput::new(["rows", "len()"], rows.len(), allowed));
         }
         if let Some(entry) = rows.iter().find(|entry| entry.is_nan() || entry.abs() >= 1e150) {
-            return Err(InvalidInput::new("rows", *entry, "numbers of magnitude below 1e150"));
+            return Err(InvalidInput::new("rows", *entry, "a list of numbers of magnitude below 1e150"));
         }
         let jacobian = DMatrix::from_row_slice(rows.len() / n, n, rows);
         Ok(Information { matrix: jacobian.transpose() * jacobian })

@@ -67,11 +67,11 @@ pub fn bootstrap(
     settings.validate()?;
     require_level(level)?;
     if !(20..=1_000_000).contains(&resamples) {
-        return Err(InvalidInput::new("resamples", resamples, "20 to 1000000 resamples").into());
+        return Err(InvalidInput::new("resamples", resamples, "a whole number from 20 to 1000000").into());
     }
     let n = problem.parameters.len();
     if fit.parameters.len() != n {
-        let allowed = "a fit of the same problem";
+        let allowed = "the number of parameters of the problem";
         return Err(InvalidInput::new(["fit", "parameters", "len()"], fit.parameters.len(), allowed).into());
     }
     let mut local = Problem { parameters: problem.parameters.clone(), ..*problem };

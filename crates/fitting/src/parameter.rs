@@ -57,7 +57,7 @@ impl Parameter {
         if let Range::Between { low, high } = self.range
             && !(low < high && (high - low).is_finite())
         {
-            let allowed = "two finite numbers, low < high";
+            let allowed = "two finite numbers with low < high";
             return Err(InvalidInput::new(field("range"), format!("{low}..{high}"), allowed));
         }
         for (part, value) in [("start", self.start), ("search.0", self.search.0), ("search.1", self.search.1)] {
@@ -67,13 +67,14 @@ impl Parameter {
                 Range::Between { low, high } => value > low && value < high && self.inward(value).is_finite(),
             };
             if !inside {
-                let allowed = "a number within the parameter's range (and of magnitude 1e-100 to 1e100 if positive)";
+                let allowed =
+                    "a number within the parameter's range; a positive parameter lies between 1e-100 and 1e100";
                 return Err(InvalidInput::new(field(part), value, allowed));
             }
         }
         if self.search.0 > self.search.1 {
             let value = format!("{}..{}", self.search.0, self.search.1);
-            return Err(InvalidInput::new(field("search"), value, "an interval, low <= high"));
+            return Err(InvalidInput::new(field("search"), value, "an interval with low <= high"));
         }
         Ok(())
     }

@@ -148,10 +148,10 @@ impl Problem<'_> {
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let n = self.parameters.len();
         if n == 0 || n > 100 {
-            return Err(InvalidInput::new(["parameters", "len()"], n, "1 to 100 parameters"));
+            return Err(InvalidInput::new(["parameters", "len()"], n, "a number from 1 to 100"));
         }
         if self.count < n {
-            return Err(InvalidInput::new("count", self.count, "at least as many residuals as parameters"));
+            return Err(InvalidInput::new("count", self.count, "at least the number of parameters"));
         }
         self.parameters.iter().try_for_each(Parameter::validate)
     }
@@ -164,13 +164,17 @@ impl Settings {
             return Err(InvalidInput::new("tolerance", self.tolerance, "a number from 1e-15 to 0.1"));
         }
         if !(1..=100_000).contains(&self.starts) {
-            return Err(InvalidInput::new("starts", self.starts, "1 to 100000 starting points"));
+            return Err(InvalidInput::new("starts", self.starts, "a number of starting points from 1 to 100000"));
         }
         if self.candidates > 1_000_000 {
-            return Err(InvalidInput::new("candidates", self.candidates, "0 to 1000000 points"));
+            return Err(InvalidInput::new("candidates", self.candidates, "a number of points from 0 to 1000000"));
         }
         if !(1..=100_000_000).contains(&self.max_evaluations) {
-            return Err(InvalidInput::new("max_evaluations", self.max_evaluations, "1 to 1e8 evaluations"));
+            return Err(InvalidInput::new(
+                "max_evaluations",
+                self.max_evaluations,
+                "a number of evaluations from 1 to 1e8",
+            ));
         }
         Ok(())
     }

@@ -80,10 +80,10 @@ pub fn profile(
     settings.validate()?;
     let n = problem.parameters.len();
     if j >= n || parameters.len() != n {
-        return Err(InvalidInput::new("j", j, "the number of a parameter, with a value for every parameter"));
+        return Err(InvalidInput::new("j", j, "the index of a parameter; there must be a value for every parameter"));
     }
     if !(rise > 0.0 && rise < HUGE && step > 0.0 && step < HUGE && least >= 0.0) {
-        return Err(InvalidInput::new("rise, step", format!("{rise}, {step}"), "positive numbers"));
+        return Err(InvalidInput::new("rise, step", format!("{rise}, {step}"), "two positive numbers"));
     }
     let objective = Objective::new(problem, None);
     let centre: Vec<f64> = problem.parameters.iter().zip(parameters).map(|(p, value)| p.inward(*value)).collect();

@@ -43,7 +43,7 @@ pub struct CrossValidation {
 /// Returns an error unless `2 <= folds <= count`.
 pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, InvalidInput> {
     if folds < 2 || folds > count {
-        return Err(InvalidInput::new("folds", folds, "2 to the number of residuals"));
+        return Err(InvalidInput::new("folds", folds, "a number from 2 to the number of residuals"));
     }
     let mut labels: Vec<usize> = (0..count).map(|i| i % folds).collect();
     Random::new(seed).shuffle(&mut labels);
@@ -71,13 +71,18 @@ pub fn cross_validate(problem: &Problem, settings: &Settings, labels: &[usize]) 
     problem.validate()?;
     settings.validate()?;
     if labels.len() != problem.count {
-        return Err(InvalidInput::new(["labels", "len()"], labels.len(), "one label for each residual").into());
+        return Err(InvalidInput::new(
+            ["labels", "len()"],
+            labels.len(),
+            "the number of residuals, because each residual has one label",
+        )
+        .into());
     }
     let mut groups = labels.to_vec();
     groups.sort_unstable();
     groups.dedup();
     if groups.len() < 2 {
-        return Err(InvalidInput::new("labels", groups.len(), "at least two different labels").into());
+        return Err(InvalidInput::new("labels", groups.len(), "a list of at least two different labels").into());
     }
     let mut residuals = vec![0.0; problem.count];
     let mut folds = Vec::with_capacity(groups.len());
@@ -85,7 +90,7 @@ pub fn cross_validate(problem: &Problem, settings: &Settings, labels: &[usize]) 
         let weights: Vec<f64> = labels.iter().map(|&l| if l == label { 0.0 } else { 1.0 }).collect();
         let kept = weights.iter().filter(|w| **w > 0.0).count();
         if kept < problem.parameters.len() {
-            let allowed = "groups that leave at least as many residuals as parameters";
+            let allowed = "a label whose group leaves at least as many residuals as there are parameters";
             return Err(InvalidInput::new("labels", label, allowed).into());
         }
         let fit = fit_weighted(problem, settings, Some(&weights))?;

@@ -38,7 +38,7 @@ impl Equation {
         InvalidInput::unless(order_ok, "order", self.order, "a number from 0.01 to 16")?;
         let count = self.initial.len();
         let count_ok = count == self.order.ceil() as usize;
-        InvalidInput::unless(count_ok, ["initial", "len()"], count, "the order rounded up")?;
+        InvalidInput::unless(count_ok, ["initial", "len()"], count, "the order of the equation rounded up")?;
         for (k, &value) in self.initial.iter().enumerate() {
             InvalidInput::require_finite(("initial", k), value)?;
         }

@@ -171,6 +171,11 @@ fn segments(breaks: &[f64], t_end: f64) -> Result<Vec<Segment>, InvalidInput> {
 pub(crate) fn require_steps(steps: usize, system: &System<'_, '_>) -> Result<usize, InvalidInput> {
     InvalidInput::unless((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
     let samples = steps * (system.unknowns + system.densities);
-    InvalidInput::unless(samples <= 1 << 28, "steps", steps, "few enough for 2^28 values of solution and density")
-        .map(|()| steps)
+    InvalidInput::unless(
+        samples <= 1 << 28,
+        "steps",
+        steps,
+        "smaller, so that solution and density have at most 2^28 values",
+    )
+    .map(|()| steps)
 }

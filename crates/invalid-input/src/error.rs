@@ -9,16 +9,17 @@ use crate::value::{Text, Value};
 /// Longest path that a message shows (characters).
 const LONGEST_PATH: usize = 90;
 
-/// An input that cannot be used: its path, its value, and what would be allowed.
+/// An input that cannot be used: its path, its value, and what would be allowed. Its text is one sentence, such as
+/// `mass_kg = -1 is not allowed; it must be a finite number greater than 0`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InvalidInput {
     /// The path of the input; empty if the whole input is meant. It can be compared with a text.
     pub field: Path,
     /// The value; `None` if the field is missing.
     pub value: Option<Value>,
-    /// What would be allowed. For a field that does not apply this begins with `left out`.
+    /// What would be allowed: the words that follow `it must be`. For a field that does not apply they begin with `left out`.
     pub allowed: Text,
-    /// Whether the object has no field of this name; `allowed` then tells those that it has.
+    /// Whether the object has no field of this name; `allowed` then lists the fields that it has.
     pub is_unknown: bool,
 }
 
@@ -121,15 +122,15 @@ impl Display for InvalidInput {
         } else {
             write!(f, "{}", cut(printable(&self.field), LONGEST_PATH))?;
         }
-        let allowed = printable(&self.allowed);
-        match &self.value {
-            Some(value) => {
-                // A field that does not apply has to be removed; for any other the message states what would be allowed.
-                let verdict = if self.allowed.starts_with("left out") { "must be" } else { "is not allowed:" };
-                write!(f, " = {} {verdict} {allowed}", cut(printable(value), LONGEST_VALUE))
-            }
-            None => write!(f, " is missing: {allowed}"),
+        if let Some(value) = &self.value {
+            write!(f, " = {}", cut(printable(value), LONGEST_VALUE))?;
         }
+        let verdict = match &self.value {
+            None => "missing",
+            Some(_) if self.is_unknown => "not a known field",
+            Some(_) => "not allowed",
+        };
+        write!(f, " is {verdict}; it must be {}", printable(&self.allowed))
     }
 }
 

@@ -11,7 +11,7 @@
 //! }
 //!
 //! let fault = mass(f64::NAN).unwrap_err().at(2).within("strikers");
-//! assert_eq!(fault.to_string(), "strikers[2].mass_kg = NaN is not allowed: a finite number greater than 0");
+//! assert_eq!(fault.to_string(), "strikers[2].mass_kg = NaN is not allowed; it must be a finite number greater than 0");
 //! ```
 //!
 //! Without the feature `alloc` the crate needs neither `std` nor an allocator. Names are then literals, and a path consists of

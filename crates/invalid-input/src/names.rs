@@ -15,7 +15,7 @@
 /// assert_eq!(End::Free.to_string(), "free");
 /// assert_eq!("clamped".parse(), Ok(End::Clamped));
 /// let fault = "glued".parse::<End>().unwrap_err();
-/// assert_eq!(fault.to_string(), "end = glued is not allowed: one of clamped, free");
+/// assert_eq!(fault.to_string(), "end = glued is not allowed; it must be one of clamped, free");
 /// ```
 #[macro_export]
 macro_rules! names {

@@ -11,20 +11,23 @@ fn a_path_grows_from_the_inside_out() {
     assert_eq!(fault.field, Path::from(("strikers", 2, "mass_kg")));
     assert_ne!(fault.field, "strikers[2].mass");
     assert_ne!(fault.field, "strikers[2].mass_kg_m");
-    assert_eq!(fault.to_string(), "strikers[2].mass_kg = -1 is not allowed: a finite number greater than 0");
+    assert_eq!(fault.to_string(), "strikers[2].mass_kg = -1 is not allowed; it must be a finite number greater than 0");
 }
 
 #[test]
 fn places_come_before_the_fields_within_them() {
     let fault = InvalidInput::missing("mass_kg", "a number").in_line(3).in_place("data.csv");
-    assert_eq!(fault.to_string(), "data.csv, line 3, mass_kg is missing: a number");
+    assert_eq!(fault.to_string(), "data.csv, line 3, mass_kg is missing; it must be a number");
     assert_eq!(fault.field.first(), None);
 }
 
 #[test]
-fn a_field_that_does_not_apply_must_be_left_out() {
-    let fault = InvalidInput::new(["contact", "restitution"], 0.5, "left out: the law is hertz");
-    assert_eq!(fault.to_string(), "contact.restitution = 0.5 must be left out: the law is hertz");
+fn a_field_that_does_not_apply_or_is_unknown_is_told_as_such() {
+    let fault = InvalidInput::new(["contact", "restitution"], 0.5, "left out, because the law is hertz");
+    let told = "contact.restitution = 0.5 is not allowed; it must be left out, because the law is hertz";
+    assert_eq!(fault.to_string(), told);
+    let unknown = InvalidInput::unknown("mass", 2_usize, "one of mass_kg, speed_m_s");
+    assert_eq!(unknown.to_string(), "mass = 2 is not a known field; it must be one of mass_kg, speed_m_s");
     assert_eq!(fault.within(Path::default()).field.first(), Some("contact"));
 }
 
@@ -59,13 +62,16 @@ fn messages_are_short_and_cannot_control_a_terminal() {
     let long = "9".repeat(400);
     let fault = InvalidInput::new(format!("a\u{1b}{long}"), long.clone(), "less");
     let told = fault.to_string();
-    assert!(told.chars().count() < 180, "{told}");
+    assert!(told.chars().count() < 190, "{told}");
     assert!(told.starts_with("a\\u{1b}99"), "{told}");
     let once = cut(&long, 60).to_string();
     assert_eq!((once.chars().count(), cut(&once, 60).to_string()), (60, once.clone()));
     assert_eq!(cut("short", 5).to_string(), "short");
     assert_eq!(printable("a\tb\u{202e}").to_string(), "a\tb\\u{202e}");
-    assert_eq!(InvalidInput::missing(Path::default(), "an object").to_string(), "the input is missing: an object");
+    assert_eq!(
+        InvalidInput::missing(Path::default(), "an object").to_string(),
+        "the input is missing; it must be an object"
+    );
 }
 
 #[test]
@@ -93,5 +99,5 @@ fn names_are_written_and_read() {
     assert_eq!(format!("{:>6}", Way::Up), "    up");
     let fault = "sideways\u{1b}".parse::<Way>().unwrap_err().within("walk");
     assert_eq!(fault.field, "walk.way");
-    assert_eq!(fault.to_string(), "walk.way = sideways\\u{1b} is not allowed: one of up, down");
+    assert_eq!(fault.to_string(), "walk.way = sideways\\u{1b} is not allowed; it must be one of up, down");
 }

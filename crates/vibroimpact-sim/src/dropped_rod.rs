@@ -116,7 +116,12 @@ impl DroppedRod {
     /// Names the field, its value and what would be allowed.
     pub fn drop(&self, speed_m_s: f64) -> Result<Drop, InvalidInput> {
         self.check()?;
-        InvalidInput::unless(speed_m_s > 0.0 && speed_m_s < 1e6, "speed_m_s", speed_m_s, "above 0, below 1e6 m/s")?;
+        InvalidInput::unless(
+            speed_m_s > 0.0 && speed_m_s < 1e6,
+            "speed_m_s",
+            speed_m_s,
+            "greater than 0 and less than 1e6 m/s",
+        )?;
         let (sin, cos) = self.inclination_rad.sin_cos();
         let root = self.mass_kg().sqrt();
         let rigid = |shape| Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape };
@@ -166,10 +171,15 @@ impl DroppedRod {
             ("youngs_modulus_pa", self.youngs_modulus_pa),
             ("density_kg_m3", self.density_kg_m3),
         ] {
-            InvalidInput::unless((1e-12..=1e15).contains(&value), field, value, "a positive number, 1e-12 to 1e15")?;
+            InvalidInput::unless((1e-12..=1e15).contains(&value), field, value, "a number from 1e-12 to 1e15")?;
         }
         let angle = self.inclination_rad;
-        InvalidInput::unless((0.0..=0.5 * PI).contains(&angle), "inclination_rad", angle, "0 to pi/2 rad")?;
+        InvalidInput::unless(
+            (0.0..=0.5 * PI).contains(&angle),
+            "inclination_rad",
+            angle,
+            "an angle from 0 to pi/2 rad",
+        )?;
         let most = 10_000;
         InvalidInput::unless(self.bending_modes <= most, "bending_modes", self.bending_modes, "at most 10000")?;
         InvalidInput::unless(self.axial_modes <= most, "axial_modes", self.axial_modes, "at most 10000")

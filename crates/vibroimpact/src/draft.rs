@@ -87,11 +87,11 @@ impl Draft {
         let value = match json::parse(text, "a value") {
             Ok(value) => value,
             Err(_) if text.starts_with(['{', '[', '"']) => {
-                return Err(fault("a JSON value after the =, or a text that does not begin with {, [ or \""));
+                return Err(fault("FIELD=VALUE, in which a value that begins with {, [ or \" is complete JSON"));
             }
             Err(_) => Value::String(text.to_owned()),
         };
-        field.set_or_insert(&mut self.tree, value).map_err(|reason| fault(&format!("{ASSIGNMENT}; {reason}")))
+        field.set_or_insert(&mut self.tree, value).map_err(|reason| fault(&format!("{ASSIGNMENT}, but {reason}")))
     }
 
     /// The present fields, and the folder of the tables that they name.

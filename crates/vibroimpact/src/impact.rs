@@ -229,7 +229,7 @@ impl Scene {
     /// The fall of a rod as input of the solver.
     pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
         let left_out = |field: Path, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),
+            Some(value) => Err(InvalidInput::new(field, value, "left out, because a dropped rod does not have it")),
             None => Ok(()),
         };
         let scene::Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;

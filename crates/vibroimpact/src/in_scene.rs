@@ -9,7 +9,7 @@ pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
         [_, Step::Index(k), Step::Field(quantity)] => {
             let mode = k + 1;
             let value = fault.value.as_ref().map_or_else(String::new, ToString::to_string);
-            let allowed = format!("a structure whose modes have a {quantity} of {}", fault.allowed);
+            let allowed = format!("a structure in whose modes {quantity} is {}", fault.allowed);
             InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
         }
         [Step::Field(name)] if ["mass_kg", "speed_m_s"].contains(&name.as_str()) => fault.within("striker"),

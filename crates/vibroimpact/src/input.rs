@@ -63,7 +63,8 @@ impl Table {
         };
         let rows: Vec<Row> = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
         if let Some(row) = rows.iter().find(|row| row.cells.len() != header.len()) {
-            let allowed = format!("as many as the line of names has, which is {}", header.len());
+            let allowed =
+                format!("as long as the line of names, which has {}", counted(header.len() as u64, "cell", "cells"));
             return Err(InvalidInput::new(
                 Step::Line(row.line),
                 counted(row.cells.len() as u64, "cell", "cells"),
@@ -74,13 +75,21 @@ impl Table {
     }
 
     /// The position of the column with this name, which may occur at most once.
-    pub fn column(&self, name: &str, needed: &str) -> Result<Option<usize>, InvalidInput> {
+    pub fn column(&self, name: &str) -> Result<Option<usize>, InvalidInput> {
         let found: Vec<usize> = (0..self.header.len()).filter(|&i| &self.header[i] == name).collect();
         match found.as_slice() {
             [] => Ok(None),
             [one] => Ok(Some(*one)),
-            _ => Err(InvalidInput::new(format!("column {name}"), format!("{} columns", found.len()), needed)),
+            _ => {
+                Err(InvalidInput::new(format!("column {name}"), format!("{} columns", found.len()), "a single column"))
+            }
         }
+    }
+
+    /// As [`Table::column`], of a column that the table must have; `needed` describes the expected table in messages.
+    pub fn needed_column(&self, name: &str, needed: &str) -> Result<usize, InvalidInput> {
+        let missing = || InvalidInput::missing(format!("column {name}"), format!("in {needed}"));
+        self.column(name)?.ok_or_else(missing)
     }
 }
 

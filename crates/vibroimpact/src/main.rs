@@ -28,8 +28,8 @@ const EXAMPLE: &str = r#"First steps:
   vibroimpact simulate impact.toml --set striker.speed_m_s=2
   vibroimpact plan impact.toml            which model is used, and why
 
-A scene is a TOML or JSON file (by its name; - is the standard input). Every quantity is in SI units, and its name says
-in which:
+A scene is a TOML or JSON file, as the ending of its name says; - is the standard input. Every quantity is in SI units,
+and the name of its field ends in the unit:
 
   { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.01,
                    "segments": [ { "length_m": 1, "width_m": 0.012, "thickness_m": 0.012, "material": "steel" } ] },
@@ -51,10 +51,10 @@ struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Print nothing but results and errors: no progress, no names of files
-    #[arg(long, short, global = true, conflicts_with = "verbose", help_heading = "Everywhere")]
+    #[arg(long, short, global = true, conflicts_with = "verbose", help_heading = "Options of every command")]
     quiet: bool,
     /// Also report each step and its time on the standard error
-    #[arg(long, short, global = true, help_heading = "Everywhere")]
+    #[arg(long, short, global = true, help_heading = "Options of every command")]
     verbose: bool,
 }
 

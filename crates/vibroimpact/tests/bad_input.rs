@@ -46,7 +46,10 @@ fn fit_takes_only_data_that_can_be_fitted() {
     let header = "mass_kg,location_m,restitution\n";
     let fit = ["fit", "data.csv", "--scene", "scene.json"];
     for (table, part) in [
-        (TABLE.replace("0.35", "1.3"), "line 5, restitution = 1.3 is not allowed: a coefficient of restitution from 0"),
+        (
+            TABLE.replace("0.35", "1.3"),
+            "line 5, restitution = 1.3 is not allowed; it must be a coefficient of restitution from 0",
+        ),
         (TABLE.replace("0.35", "-0.3"), "line 5, restitution = -0.3"),
         (TABLE.replace("0.4\n", "0.4,7\n"), "line 3 = 4 cells is not allowed"),
         (TABLE.replace(",0.4\n", "\n"), "line 3 = 2 cells is not allowed"),
@@ -124,9 +127,12 @@ fn a_damping_ratio_is_reported_by_its_name_in_the_scene() {
         ),
     ]);
     for (scene, part) in [
-        ("scene.json", "structure.damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
-        ("stated.json", "structure.damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
-        ("table.json", "modes.csv, line 2, damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
+        ("scene.json", "structure.damping_ratio = 10000000.0 is not allowed; it must be a number from 0 to 1e6"),
+        ("stated.json", "structure.damping_ratio = 10000000.0 is not allowed; it must be a number from 0 to 1e6"),
+        (
+            "table.json",
+            "modes.csv, line 2, damping_ratio = 10000000.0 is not allowed; it must be a number from 0 to 1e6",
+        ),
     ] {
         let message = refused(folder.path(), &["simulate", scene]);
         assert!(message.contains(part), "{message}");

@@ -114,7 +114,9 @@ fn a_model_without_histories_has_no_end_of_them() {
     for model in ["emoc", "infinite-beam"] {
         for output in [&["--out", "results"][..], &["--plot", "impact.svg"], &[]] {
             let message = Folder::with(&light(model)).refusal("simulate", &[output, &["--until", "0.5"]].concat());
-            let expected = format!("--until = 0.5 must be left out: the model {model} gives the net result alone");
+            let expected = format!(
+                "--until = 0.5 is not allowed; it must be left out, because the model {model} gives the net result alone"
+            );
             assert!(message.contains(&expected) && message.contains("\"modal\""), "{message}");
         }
     }

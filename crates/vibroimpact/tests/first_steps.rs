@@ -95,7 +95,7 @@ fn init_writes_scenes_that_can_be_solved() {
         assert!(result["outcome"] == if kind == "bodies" { "end" } else { "rebound" }, "{kind}: {}", result["outcome"]);
     }
     let message = refused(&run(folder.path(), &["init", "beam.toml"]));
-    assert!(message.contains("FILE = beam.toml is not allowed: this file exists"), "{message}");
+    assert!(message.contains("FILE = beam.toml is not allowed; it must be the name of a new file"), "{message}");
     stdout(&run(folder.path(), &["init", "beam.toml", "--kind", "plate", "--force"]));
     assert!(fs::read_to_string(folder.path().join("beam.toml")).unwrap().contains("kind = \"plate\""));
     assert!(refused(&run(folder.path(), &["init", "impact.json"])).contains("a file name that ends in .toml"));
@@ -121,10 +121,10 @@ fn a_scene_may_come_from_the_standard_input() {
         ("structure", "line 1"),
         ("\u{feff}{}", "structure is missing"),
         // JSON, though not a scene
-        ("[]", "the scene = [] is not allowed: "),
+        ("[]", "the scene = [] is not allowed; it must be "),
         ("[1, 2", "the text ends too early"),
-        (" [1]\n", "the scene = [1] is not allowed: "),
-        ("3", "the scene = 3 is not allowed: "),
+        (" [1]\n", "the scene = [1] is not allowed; it must be "),
+        ("3", "the scene = 3 is not allowed; it must be "),
         // tables of TOML begin in the same way
         ("[structure]\nkind = \"beam\"\n", "striker is missing"),
         ("[structure] # the beam\nkind = \"beam\"\n", "striker is missing"),
@@ -167,16 +167,16 @@ fn fields_are_set_on_the_command_line() {
     assert_eq!(scene["structure"]["segments"][0]["youngs_modulus_pa"], 7e10);
     assert!(scene.get("tolerance").is_none());
     for (assignment, part) in [
-        ("striker", "--set = striker is not allowed: FIELD=VALUE"),
+        ("striker", "--set = striker is not allowed; it must be FIELD=VALUE"),
         ("=1", "FIELD=VALUE"),
         ("a..b=1", "FIELD=VALUE"),
         ("strkier.speed_m_s=2", "did you mean striker?"),
-        ("striker.sped_m_s=2", "striker.sped_m_s = 2 is not allowed: unknown field"),
+        ("striker.sped_m_s=2", "striker.sped_m_s = 2 is not a known field"),
         ("structure.segments[0].materail=steel", "did you mean material?"),
         ("structure.segments[7].length_m=2", "counted from 0"),
-        ("striker.speed_m_s=fast", "striker.speed_m_s = \"fast\" is not allowed: a finite number"),
+        ("striker.speed_m_s=fast", "striker.speed_m_s = \"fast\" is not allowed; it must be a finite number"),
         ("striker.speed_m_s=NaN", "striker.speed_m_s = \"NaN\" is not allowed"),
-        ("structure.ends=[1", "a JSON value after the ="),
+        ("structure.ends=[1", "is complete JSON"),
         ("location_m=3", "location_m = 3 is not allowed"),
         ("striker.radius_m=-1", "striker.radius_m = -1.0 is not allowed"),
     ] {
@@ -218,7 +218,10 @@ fn an_impact_is_animated() {
     let plate = first_scene(folder.path(), "plate");
     for text in [bodies, plate] {
         let message = refused(&fed(folder.path(), &["simulate", "-", "--animate", "other.svg"], &text));
-        assert!(message.contains("--animate = other.svg must be left out for this scene"), "{message}");
+        assert!(
+            message.contains("--animate = other.svg is not allowed; it must be left out for this scene"),
+            "{message}"
+        );
     }
     assert!(refused(&run(folder.path(), &["demo", "--animate", "a.gif"])).contains("ends in .svg"));
     assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));
@@ -337,7 +340,10 @@ fn every_command_has_a_manual_page() {
     }
     assert!(referred.iter().all(|name| folder.path().join(format!("man/{name}.1")).exists()), "{referred:?}");
     assert!(refused(&run(folder.path(), &["manual", "--out", "man"])).contains("this file exists"));
-    assert!(refused(&run(folder.path(), &["manual", "simulat"])).contains("COMMAND = simulat is not allowed: one of"));
+    assert!(
+        refused(&run(folder.path(), &["manual", "simulat"]))
+            .contains("COMMAND = simulat is not allowed; it must be one of")
+    );
 }
 
 #[test]

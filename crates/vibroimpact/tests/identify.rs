@@ -346,28 +346,40 @@ fn bad_input_is_refused_by_name() {
     let record = "location,force_file\ntip,force.csv\n";
     let stiffness = "contact.stiffness_n_m1_5";
     for (data, free, said) in [
-        (good, "contact.stiffness", "--free contact.stiffness is missing: a field that the scene states"),
+        (good, "contact.stiffness", "--free contact.stiffness is missing; it must be a field that the scene states"),
         (
             good,
             "contact.law",
-            "--free contact.law = \"hertz\" is not allowed: a field of the scene that is a finite number",
+            "--free contact.law = \"hertz\" is not allowed; it must be a field of the scene that is a finite number",
         ),
         (good, "contact.stiffness_n_m1_5=2..1", "--free = \"contact.stiffness_n_m1_5=2..1\" is not allowed"),
-        (good, "striker.mass_kg,striker.mass_kg", "--free = striker.mass_kg is not allowed: each field once"),
+        (
+            good,
+            "striker.mass_kg,striker.mass_kg",
+            "--free = striker.mass_kg is not allowed; it must be stated only once",
+        ),
         (good, "structure.omega_rad_s[9]", "--free structure.omega_rad_s[9] is missing"),
-        (good, "gauge.time_constant_s=1e-6..1e-3", "left out where the table names no force_file"),
-        (good, "location", "--free = location is not allowed: a field that the table does not state"),
-        (record, "gauge.time_constant_s", "--free gauge.time_constant_s=low..high is missing: limits greater than 0"),
+        (good, "gauge.time_constant_s=1e-6..1e-3", "left out, because the table names no force_file"),
+        (good, "location", "--free = location is not allowed; it must be a field that the table does not state"),
+        (
+            record,
+            "gauge.time_constant_s",
+            "--free gauge.time_constant_s=low..high is missing; it must be an interval with limits greater than 0",
+        ),
         ("location\ntip\n", stiffness, "a measured quantity is missing"),
         ("location,restitution\n", stiffness, "number of rows = 0 is not allowed"),
         ("location,restitution\ntip,\n", stiffness, "measured values = 0 is not allowed"),
-        ("location,restitution\ntip,x\n", stiffness, "line 2, restitution = x is not allowed: a finite number"),
+        (
+            "location,restitution\ntip,x\n",
+            stiffness,
+            "line 2, restitution = x is not allowed; it must be a finite number",
+        ),
         ("location,restitution\n,0.3\n", stiffness, "line 2, location is missing"),
         ("location,restitution\ntap,0.3\ntip,0.3\n", stiffness, "line 2, location = \"tap\" is not allowed"),
         (
             "location,restitution,restitution_sd\ntip,0.3,0\n",
             stiffness,
-            "line 2, restitution_sd = 0.0 is not allowed: a finite number greater than 0",
+            "line 2, restitution_sd = 0.0 is not allowed; it must be a finite number greater than 0",
         ),
         ("location,restitution,restitution_sd\ntip,0.3,\n", stiffness, "line 2, restitution_sd is missing"),
         ("location,first_contact_s\ntip,-1\n", stiffness, "line 2, first_contact_s = -1.0 is not allowed"),
@@ -385,20 +397,24 @@ fn bad_input_is_refused_by_name() {
         (
             "location,restitutoin,restitution\ntip,1,1\ntip,1,1\n",
             stiffness,
-            "line 2, restitutoin = 1.0 is not allowed: unknown field",
+            "line 2, restitutoin = 1.0 is not a known field",
         ),
         (
             "location,striker.mass_kg,restitution\ntip,-1,0.3\ntip,-1,0.3\n",
             stiffness,
             "line 2, striker.mass_kg = -1.0 is not allowed",
         ),
-        ("location,restitution\ntip,0.3\n", stiffness, "number of measured values = 1 is not allowed: at least 2"),
+        (
+            "location,restitution\ntip,0.3\n",
+            stiffness,
+            "number of measured values = 1 is not allowed; it must be at least 2",
+        ),
         ("location,force_file\ntip,../force.csv\n", stiffness, "line 2, force_file = \"../force.csv\" is not allowed"),
         ("location,force_file\ntip,none.csv\n", stiffness, "none.csv"),
         (
             "location,force_file\ntip,bad.csv\n",
             stiffness,
-            "bad.csv, line 3, time_s = 0.0 is not allowed: a time after that of the line above",
+            "bad.csv, line 3, time_s = 0.0 is not allowed; it must be a time after that of the line above",
         ),
         ("location,force_file\ntip,short.csv\n", stiffness, "short.csv, number of samples = 1 is not allowed"),
     ] {
@@ -440,15 +456,18 @@ fn bad_options_are_refused_by_name() {
         fs::write(folder.path().join(name), table).unwrap();
     }
     for (options, said) in [
-        (["--level", "1"], "--level = 1.0 is not allowed: a probability from 0.5 to 0.999"),
+        (["--level", "1"], "--level = 1.0 is not allowed; it must be a probability from 0.5 to 0.999"),
         (["--starts", "0"], "--starts = 0 is not allowed"),
-        (["--candidates", "next.csv"], "column restitution = 1 column must be left out of a table of candidates"),
+        (
+            ["--candidates", "next.csv"],
+            "column restitution = 1 column is not allowed; it must be left out of a table of candidates",
+        ),
         (["--candidates", "none.csv"], "cannot read none.csv"),
-        (["--candidates", "off.csv"], "the candidates, line 3, location = \"tap\" is not allowed: one of"),
-        (["--candidates", "unknown.csv"], "the candidates, line 2, colour = 3.0 is not allowed: unknown field"),
+        (["--candidates", "off.csv"], "the candidates, line 3, location = \"tap\" is not allowed; it must be one of"),
+        (["--candidates", "unknown.csv"], "the candidates, line 2, colour = 3.0 is not a known field"),
         (
             ["--candidates", "free.csv"],
-            "column contact.stiffness_n_m1_5 = 1 column must be left out of a table of candidates",
+            "column contact.stiffness_n_m1_5 = 1 column is not allowed; it must be left out of a table of candidates",
         ),
         (["--candidates", "heavy.csv"], "the candidates, line 3, striker.mass_kg = -0.05 is not allowed"),
     ] {

@@ -88,11 +88,11 @@ fn errors_name_the_option() {
             let mut arguments = WANTED;
             arguments[place] = bad;
             let message = refusal(&arguments);
-            assert!(message.contains(&format!("'{bad}' for '{option}")) && message.contains("allowed is"), "{message}");
+            assert!(message.contains(&format!("'{bad}' for '{option}")) && message.contains("it must be"), "{message}");
         }
         for option in ["--compression-m", "--step-s", "--other-mass-kg"] {
             let message = refusal(&[&WANTED[..], &[option, bad]].concat());
-            assert!(message.contains(&format!("'{bad}' for '{option}")) && message.contains("allowed is"), "{message}");
+            assert!(message.contains(&format!("'{bad}' for '{option}")) && message.contains("it must be"), "{message}");
         }
     }
     for bad in ["0", "-1", "1.01", "nan"] {

@@ -245,9 +245,9 @@ fn an_unavailable_model_is_refused_by_name() {
     for (field, value, allowed) in [
         ("/model", json!("magic"), "auto, rigid, infinite-beam, modal, emoc"),
         ("/model", json!(3), "auto, rigid"),
-        ("/modes", json!("all"), "\"auto\", or a whole number"),
-        ("/modes", json!(2.5), "\"auto\", or a whole number"),
-        ("/modes", json!(-1), "\"auto\", or a whole number"),
+        ("/modes", json!("all"), "\"auto\" or a whole number"),
+        ("/modes", json!(2.5), "\"auto\" or a whole number"),
+        ("/modes", json!(-1), "\"auto\" or a whole number"),
     ] {
         let fault = Scene::from_value(&with(&[(field, value)])).unwrap_err();
         assert!(format!("/{}", fault.field) == field && fault.allowed.contains(allowed), "{fault}");

@@ -133,7 +133,7 @@ fn fit_finds_the_true_parameters() {
 #[test]
 fn bad_parameters_are_refused_by_name() {
     for (option, value, part) in [
-        ("--mu0", "-1", "mu0 = -1.0 is not allowed: a finite number not less than 0"),
+        ("--mu0", "-1", "mu0 = -1.0 is not allowed; it must be a finite number not less than 0"),
         ("--alpha0", "NaN", "alpha0 = NaN is not allowed"),
         ("--alpha1", "inf", "alpha1 = inf is not allowed"),
         ("--mu0", "one", "one"),
@@ -171,9 +171,12 @@ fn bad_tables_are_refused_with_their_line() {
         (String::new(), "column mass_kg is missing"),
         ("mass_kg,location_m\n0.1,0.2\n".to_owned(), "column restitution is missing"),
         (format!("restitution,{header}"), "column restitution = 2 columns"),
-        (header.to_owned(), "lines of data = 0 is not allowed: at least 3"),
+        (header.to_owned(), "lines of data = 0 is not allowed; it must be at least 3"),
         (format!("{header}0.1,0.2,0.5\n"), "lines of data = 1"),
-        (format!("{header}{good}0.1,0.2,high\n"), "line 5, restitution = high is not allowed: a finite number"),
+        (
+            format!("{header}{good}0.1,0.2,high\n"),
+            "line 5, restitution = high is not allowed; it must be a finite number",
+        ),
         (format!("{header}{good}\n0.1,0.2,NaN\n"), "line 6, restitution = NaN"),
         (format!("{header}{good}\n\n0.1,0.2,NaN\n").replace('\n', "\r\n"), "line 7, restitution = NaN"),
         (format!("\u{feff}{header}0.1,0.2,NaN\n"), "line 2, restitution = NaN"),
@@ -181,12 +184,15 @@ fn bad_tables_are_refused_with_their_line() {
         (format!("{header}{good}0.1,0.2,1e300\n"), "line 5, restitution = 1"),
         (
             format!("{header}{good}0.1,0.2\n"),
-            "line 5 = 2 cells is not allowed: as many as the line of names has, which is 3",
+            "line 5 = 2 cells is not allowed; it must be as long as the line of names, which has 3 cells",
         ),
         (format!("{header}{good}0.1,,0.5\n"), "line 5, location_m is missing"),
         (format!("{header}0.1,1.01,0.5\n{good}"), "line 2, location_m = 1.01 is not allowed"),
         (format!("{header}0.1,-0.01,0.5\n{good}"), "line 2, location_m = -0.01"),
-        (format!("{header}0,0.5,0.5\n{good}"), "line 2, mass_kg = 0.0 is not allowed: a finite number greater than 0"),
+        (
+            format!("{header}0,0.5,0.5\n{good}"),
+            "line 2, mass_kg = 0.0 is not allowed; it must be a finite number greater than 0",
+        ),
         (format!("{header}-1,0.5,0.5\n{good}"), "line 2, mass_kg = -1.0"),
     ] {
         let message = refusal(PINNED, Some(table.as_bytes()), &fit);

@@ -44,7 +44,7 @@ fn enums_have_the_names_of_scene_files() {
         AxialEnd: Fixed, Free;
     }
     let fault = "glued".parse::<End>().unwrap_err();
-    assert_eq!(fault.to_string(), "end = glued is not allowed: one of clamped, pinned, free, guided");
+    assert_eq!(fault.to_string(), "end = glued is not allowed; it must be one of clamped, pinned, free, guided");
 }
 
 #[test]

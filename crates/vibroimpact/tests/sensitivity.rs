@@ -228,7 +228,7 @@ fn fields_without_derivatives_are_listed_with_the_reason() {
         stdout(&run(folder.path(), &arguments))
     };
     let text = rows("sdnl32.json", &[]);
-    assert!(text.contains("striker.speed_m_s  must be 0 for an immovable striker"), "{text}");
+    assert!(text.contains("striker.speed_m_s  it must be 0 for an immovable striker"), "{text}");
     assert!(text.contains("\n  start.gap_m "), "{text}");
     let text = rows("../assemblies/newtons-cradle.json", &[]);
     assert!(text.contains(r#"contacts[1].gap_m         contact "2-3" touches without speed at 0 s"#), "{text}");

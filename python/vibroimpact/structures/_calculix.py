@@ -48,7 +48,7 @@ def from_calculix(
     compliances = {}
     for name, file in (static or {}).items():
         if name not in nodes:
-            raise ValueError(f"static {name!r} is not allowed: one of the points {list(nodes)}")
+            raise ValueError(f"static {name!r} is not allowed; it must be one of the points {list(nodes)}")
         node, along = nodes[name]
         loaded = [block for mode, block in _displacements(Path(file)) if mode is None]
         if len(loaded) != 1:

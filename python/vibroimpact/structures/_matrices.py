@@ -49,11 +49,11 @@ def from_matrices(
     k, m = _matrix("stiffness", stiffness), _matrix("mass", mass)
     size = k.shape[0]
     if m.shape != k.shape:
-        raise ValueError(f"mass = {m.shape} is not allowed: as large as the stiffness matrix, {k.shape}")
+        raise ValueError(f"mass = {m.shape} is not allowed; it must be as large as the stiffness matrix, {k.shape}")
     if not 0 < count < size:
-        raise ValueError(f"count = {count} is not allowed: 1 to {size - 1}, one less than the degrees of freedom")
+        raise ValueError(f"count = {count} is not allowed; it must be from 1 to {size - 1}, one less than the number of degrees of freedom")
     if not 0.0 < rounding < 1.0:
-        raise ValueError(f"rounding = {rounding} is not allowed: a number between 0 and 1")
+        raise ValueError(f"rounding = {rounding} is not allowed; it must be a number between 0 and 1")
     shape_factor, compliance_factor = units(length_m, mass_kg)
     loads = {name: _load(name, point, size) for name, point in points.items()}
     if shift is None:
@@ -70,11 +70,11 @@ def from_matrices(
     rigid = np.abs(eigenvalues) <= _RIGID * rounded
     if np.any(eigenvalues[~rigid] < 0.0):
         raise ValueError(
-            f"stiffness is not allowed: the eigenvalue {eigenvalues.min()} is negative, the structure unstable "
+            f"stiffness is not allowed; it must be without negative eigenvalues, and {eigenvalues.min()} makes the structure unstable "
             "(if the entries have few digits, state their rounding)"
         )
     if rigid.all():
-        raise ValueError(f"count = {count} is not allowed: more than the {count} rigid-body modes that were found")
+        raise ValueError(f"count = {count} is not allowed; it must be more than the {count} rigid-body modes that were found")
     modes = vectors[:, rigid]
     moved = csc_array(m @ modes)
     factors = splu(bmat([[k, moved], [moved.T, None]], format="csc") if rigid.any() else k.tocsc())
@@ -100,22 +100,22 @@ def _matrix(name: str, given: Any) -> Any:
 
     matrix = csr_array(mmread(given) if isinstance(given, (str, PathLike)) else given)
     if matrix.shape[0] != matrix.shape[1]:
-        raise ValueError(f"{name} = {matrix.shape} is not allowed: a square matrix")
+        raise ValueError(f"{name} = {matrix.shape} is not allowed; it must be a square matrix")
     if not np.all(np.isfinite(matrix.data)):
-        raise ValueError(f"{name} is not allowed: finite numbers only")
+        raise ValueError(f"{name} is not allowed; it must be a matrix of finite numbers")
     if abs(matrix - matrix.T).max() > 1e-9 * abs(matrix).max():
-        raise ValueError(f"{name} is not allowed: a symmetric matrix")
+        raise ValueError(f"{name} is not allowed; it must be a symmetric matrix")
     return matrix
 
 
 def _load(name: str, point: int | ArrayLike, size: int) -> Floats:
     if isinstance(point, (int, np.integer)):
         if not 0 <= point < size:
-            raise ValueError(f"point {name} = {point} is not allowed: a degree of freedom from 0 to {size - 1}")
+            raise ValueError(f"point {name} = {point} is not allowed; it must be a degree of freedom from 0 to {size - 1}")
         load = np.zeros(size)
         load[point] = 1.0
         return load
     load = np.asarray(point, dtype=np.float64)
     if load.shape != (size,) or not np.all(np.isfinite(load)) or not load.any():
-        raise ValueError(f"point {name} is not allowed: a degree of freedom, or {size} finite weights, not all 0")
+        raise ValueError(f"point {name} is not allowed; it must be a degree of freedom, or {size} finite weights, not all 0")
     return load

@@ -42,7 +42,7 @@ def from_nastran(
     compliances = {}
     for name, file in (static or {}).items():
         if name not in nodes:
-            raise ValueError(f"static {name!r} is not allowed: one of the points {list(nodes)}")
+            raise ValueError(f"static {name!r} is not allowed; it must be one of the points {list(nodes)}")
         node, along = nodes[name]
         loaded = _first(_read(file).displacements, file, "displacements")
         compliances[name] = float(_at(loaded, node, file)[-1] @ along) / force * compliance_factor

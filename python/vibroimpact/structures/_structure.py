@@ -42,20 +42,20 @@ class Structure:
         if count == 0:
             raise ValueError("omega_rad_s is empty: at least one mode is needed")
         if np.any(self.omega_rad_s < 0.0):
-            raise ValueError(f"omega_rad_s = {self.omega_rad_s.min()} is not allowed: 0 or a positive number")
+            raise ValueError(f"omega_rad_s = {self.omega_rad_s.min()} is not allowed; it must be 0 or a positive number")
         if not self.shapes:
             raise ValueError("shapes are missing: at least one named point is needed")
         for name in self.shapes:
             if not name or name in _TAKEN:
-                raise ValueError(f"point {name!r} is not allowed: a name other than {', '.join(_TAKEN)}")
+                raise ValueError(f"point {name!r} is not allowed; it must be a name other than {', '.join(_TAKEN)}")
         self.shapes = {name: _numbers(f"shapes of {name}", shape, count) for name, shape in self.shapes.items()}
         if self.damping_ratios is not None:
             self.damping_ratios = _numbers("damping_ratios", self.damping_ratios, count)
         for name, compliance in self.static_compliances_m_n.items():
             if name not in self.shapes:
-                raise ValueError(f"static compliance of {name!r} is not allowed: one of the points {list(self.shapes)}")
+                raise ValueError(f"static compliance of {name!r} is not allowed; it must be one of the points {list(self.shapes)}")
             if not (compliance >= 0.0 and math.isfinite(compliance)):
-                raise ValueError(f"static compliance of {name} = {compliance} is not allowed: 0 or a positive number")
+                raise ValueError(f"static compliance of {name} = {compliance} is not allowed; it must be 0 or a positive number")
 
     def write(self, path: str | PathLike[str]) -> dict[str, Any]:
         """Writes the table of modes, and returns the ``structure`` of a scene in the same folder."""
@@ -91,7 +91,7 @@ class Structure:
         not affect an impact there.
         """
         if location is not None and location not in self.shapes:
-            raise ValueError(f"location = {location!r} is not allowed: one of the points {list(self.shapes)}")
+            raise ValueError(f"location = {location!r} is not allowed; it must be one of the points {list(self.shapes)}")
         means: dict[str, Floats] = {"omega_rad_s": self.omega_rad_s}
         if self.damping_ratios is not None:
             means["damping_ratios"] = self.damping_ratios
@@ -133,14 +133,14 @@ class Structure:
         listed = float(np.sum((self.shapes[name][elastic] / self.omega_rad_s[elastic]) ** 2))
         whole = self.static_compliances_m_n[name]
         if whole < listed * (1.0 - _ROUNDING):
-            raise ValueError(f"static compliance of {name} = {whole} is not allowed: not less than that of the listed modes, {listed}")
+            raise ValueError(f"static compliance of {name} = {whole} is not allowed; it must be not less than that of the listed modes, {listed}")
         return max(whole - listed, 0.0)
 
 
 def _lognormal(name: str, mean: float, sd: float) -> list[float]:
     """Median, and standard deviation of the logarithm, of the lognormal distribution with this mean and standard deviation."""
     if mean <= 0.0:
-        raise ValueError(f"{name} = {mean} with the standard deviation {sd} is not allowed: a positive number, or no standard deviation")
+        raise ValueError(f"{name} = {mean} with the standard deviation {sd} is not allowed; it must be positive, or have no standard deviation")
     square = math.log1p((sd / mean) ** 2)
     return [mean * math.exp(-0.5 * square), math.sqrt(square)]
 
@@ -148,9 +148,9 @@ def _lognormal(name: str, mean: float, sd: float) -> list[float]:
 def _numbers(name: str, values: ArrayLike, count: int | None = None) -> Floats:
     numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if count is not None and numbers.shape != (count,):
-        raise ValueError(f"{name} = {numbers.size} values is not allowed: as many as there are modes, {count}")
+        raise ValueError(f"{name} = {numbers.size} values is not allowed; it must be as long as the number of modes, {count}")
     if not np.all(np.isfinite(numbers)):
-        raise ValueError(f"{name} is not allowed: finite numbers only")
+        raise ValueError(f"{name} is not allowed; it must be a list of finite numbers")
     return numbers
 
 
@@ -182,7 +182,7 @@ def frequencies(path: str | PathLike[str], eigenvalues: Floats, supported: bool 
         values[(values < 0.0) & (-values <= _NEGATIVE * positive.min())] = 0.0
     if np.any(values < 0.0):
         raise ValueError(
-            f"{fspath(path)}: the eigenvalue {values.min()} is not allowed: 0 or a positive number; an unstable structure has no modes"
+            f"{fspath(path)}: the eigenvalue {values.min()} is not allowed; it must be 0 or a positive number, because an unstable structure has no modes"
         )
     return np.asarray(np.sqrt(values))
 
@@ -192,7 +192,7 @@ def direction(name: str, given: Sequence[float]) -> Floats:
     vector = np.asarray(given, dtype=np.float64)
     length = float(np.linalg.norm(vector)) if vector.shape == (3,) else 0.0
     if not (length > 0.0 and math.isfinite(length)):
-        raise ValueError(f"direction of {name} = {given} is not allowed: three numbers, not all 0")
+        raise ValueError(f"direction of {name} = {given} is not allowed; it must be three numbers that are not all 0")
     return vector / length
 
 
@@ -200,6 +200,6 @@ def units(length_m: float, mass_kg: float) -> tuple[float, float]:
     """The factors to SI for mass-normalised shapes and compliances of a model whose unit of time is the second."""
     for name, value in (("length_m", length_m), ("mass_kg", mass_kg)):
         if not (value > 0.0 and math.isfinite(value)):
-            raise ValueError(f"{name} = {value} is not allowed: a finite number greater than 0")
+            raise ValueError(f"{name} = {value} is not allowed; it must be a finite number greater than 0")
     # A shape is 1/sqrt(mass); a compliance is length/force = s^2/mass.
     return mass_kg**-0.5, 1.0 / mass_kg

@@ -30,9 +30,9 @@ def from_table(path: str | PathLike[str], static_compliances_m_n: Mapping[str, f
     spreads = {name: values for name, values in columns.items() if name.endswith(_SD)}
     for name in spreads:
         if name.removesuffix(_SD) not in columns:
-            raise ValueError(f"{path}: column {name} is not allowed: beside the column {name.removesuffix(_SD)}")
+            raise ValueError(f"{path}: column {name} is not allowed; it must be beside the column {name.removesuffix(_SD)}")
         if np.any(spreads[name] < 0.0):
-            raise ValueError(f"{path}: column {name} = {spreads[name].min()} is not allowed: 0 or a positive number")
+            raise ValueError(f"{path}: column {name} = {spreads[name].min()} is not allowed; it must be 0 or a positive number")
     points = [name for name in columns if name not in spreads and name not in (frequency, "damping_ratio")]
     deviations = {}
     for name, key, scale in [
@@ -71,7 +71,7 @@ def _columns(path: Path) -> dict[str, Floats]:
             except ValueError:
                 value = math.nan
             if not math.isfinite(value):
-                raise ValueError(f"{path}: row {line}, {name} = {row[k]!r} is not allowed: a finite number")
+                raise ValueError(f"{path}: row {line}, {name} = {row[k]!r} is not allowed; it must be a finite number")
             cells.append(value)
         found[name] = np.asarray(cells)
     return found

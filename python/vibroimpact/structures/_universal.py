@@ -49,9 +49,9 @@ def from_universal(
     deviations follow from the residuals of the fit.
     """
     if driving not in points:
-        raise ValueError(f"driving = {driving!r} is not allowed: one of the points {list(points)}")
+        raise ValueError(f"driving = {driving!r} is not allowed; it must be one of the points {list(points)}")
     if not 0 < count < _MOST_ROWS // 4:
-        raise ValueError(f"count = {count} is not allowed: 1 to {_MOST_ROWS // 4 - 1}")
+        raise ValueError(f"count = {count} is not allowed; it must be from 1 to {_MOST_ROWS // 4 - 1}")
     omega, responses = _read(path, points, driving)
     if band_hz is not None:
         inside = (omega >= 2.0 * math.pi * band_hz[0]) & (omega <= 2.0 * math.pi * band_hz[1])
@@ -98,7 +98,7 @@ def _read(
             continue
         kind = int(data.get("ordinate_spec_data_type", 0))
         if kind not in _KINDS:
-            raise ValueError(f"{fspath(path)}: a response of kind {kind} is not allowed: 8, 11 or 12 (displacement, velocity, acceleration)")
+            raise ValueError(f"{fspath(path)}: a response of kind {kind} is not allowed; it must be 8, 11 or 12 (displacement, velocity or acceleration)")
         omega = 2.0 * math.pi * np.asarray(data["x"], dtype=np.float64)
         sign = math.copysign(1.0, data["rsp_dir"]) * math.copysign(1.0, data["ref_dir"])
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -102,14 +102,19 @@ impl FromStr for Part {
 }
 
 fn unknown(chapter: &str) -> BadInput {
-    BadInput(format!("chapter = {chapter} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"))
+    BadInput(format!(
+        "chapter = {chapter} is not allowed; it must be one of 2, 3, 4, 5, 6, 7, 8, ensemble, theories, all"
+    ))
 }
 
 /// Runs a part and writes its folder. `quick` computes fewer points with the same code. `data` are measured points for
 /// chapter 8.
 pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<Finished, Failure> {
     if data.is_some() && part != Part::Chapter(8) {
-        let fault = format!("--data is not allowed with {}: only chapter 8 takes measured points", part.folder());
+        let fault = format!(
+            "--data is not allowed with {}; it must be left out, because only chapter 8 takes measured points",
+            part.folder()
+        );
         return Err(BadInput(fault).into());
     }
     let mut study = Study::new(out, quick)?.part_of_a_larger_one(part.of_the_thesis());

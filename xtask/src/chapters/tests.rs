@@ -226,7 +226,7 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"));
+    assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble, theories, all"));
     assert!(run(Part::Chapter(9), folder.path(), true, None).is_err());
     assert!(
         Part::ALL.iter().all(|part| part.folder().trim_start_matches("chapter-").parse::<Part>().unwrap() == *part)

@@ -114,7 +114,8 @@ impl Summary {
         let told = |fault| BadInput(format!("{}: {fault}", path.display()));
         let summary: Summary = serde_json::from_str(&std::fs::read_to_string(path)?).map_err(told)?;
         if summary.seed != seed {
-            let fault = format!("--seed {seed} is not allowed: {} is of seed {}", path.display(), summary.seed);
+            let fault =
+                format!("--seed {seed} is not allowed; it must be {}, the seed of {}", summary.seed, path.display());
             return Err(BadInput(fault).into());
         }
         Ok(summary)

@@ -145,7 +145,7 @@ impl Plate {
             }
         }
         if !(1e-4..=1e4).contains(&(self.width_m / self.length_m)) {
-            let allowed = "from a ten-thousandth to ten thousand times length_m";
+            let allowed = "from a ten-thousandth of length_m to ten thousand times length_m";
             return Err(InvalidInput::new("width_m", self.width_m, allowed));
         }
         let (rigidity, mass) = (self.flexural_rigidity_n_m(), self.mass_kg());
@@ -157,7 +157,7 @@ impl Plate {
             Err(InvalidInput::new(
                 "thickness_m",
                 self.thickness_m,
-                "dimensions for which double precision can represent the modes",
+                "part of a plate whose modes double precision can represent",
             ))
         }
     }

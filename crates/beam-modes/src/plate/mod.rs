@@ -56,7 +56,11 @@ impl Plate {
         }
         let ample = if count > 0 { Ritz::degrees(self, count.max(AMPLE)) } else { None };
         let degrees = ample.or_else(|| Ritz::degrees(self, count)).ok_or_else(|| {
-            InvalidInput::new("count", count, "fewer modes: this number needs matrices of more than 3000 rows")
+            InvalidInput::new(
+                "count",
+                count,
+                "smaller, because this number of modes needs matrices of more than 3000 rows",
+            )
         })?;
         Ritz::new(self, degrees).modes(count)
     }
@@ -86,7 +90,7 @@ impl Plate {
         self.checked()?;
         let (x, y) = self.place(x_m, y_m)?;
         if let PlateTheory::Mindlin { .. } = self.theory {
-            let allowed = "\"kirchhoff\": under a point load the deflection of a plate with shear has no limit";
+            let allowed = "\"kirchhoff\", because the deflection of a plate with shear has no limit under a point load";
             return Err(InvalidInput::new("theory", "mindlin", allowed));
         }
         if self.pinned_all_round() {

@@ -195,7 +195,7 @@ impl<'a> Ritz<'a> {
 }
 
 fn unresolved() -> InvalidInput {
-    InvalidInput::new("width_m", "as given", "a shape of the plate for which double precision resolves the modes")
+    InvalidInput::new("width_m", "as given", "closer to length_m, so that double precision can resolve the modes")
 }
 
 #[cfg(test)]

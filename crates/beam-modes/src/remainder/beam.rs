@@ -95,10 +95,10 @@ impl Modes {
         let elastic = &all[self.rigid_body_count()..];
         let tail = elastic.get(kept.saturating_sub(self.rigid_body_count())..).unwrap_or_default();
         if tail.is_empty() {
-            return Err(InvalidInput::new("kept", kept, "fewer than the modes that were computed"));
+            return Err(InvalidInput::new("kept", kept, "less than the number of modes that were computed"));
         }
         if !(static_compliance_m_n >= 0.0 && static_compliance_m_n.is_finite()) {
-            let allowed = "a finite number, at least 0";
+            let allowed = "a finite number not less than 0";
             return Err(InvalidInput::new("static_compliance_m_n", static_compliance_m_n, allowed));
         }
         // The smallest terms first, so that the sum is as accurate as its last terms.

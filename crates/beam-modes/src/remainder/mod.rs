@@ -67,7 +67,7 @@ pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -
     let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
         return match require_compliance("static_rest_m_n", static_rest_m_n)? {
             0.0 => Ok(Vec::new()),
-            rest => Err(InvalidInput::new("static_rest_m_n", rest, "0 where no mode of the tail is given")),
+            rest => Err(InvalidInput::new("static_rest_m_n", rest, "0, because the list tail is empty")),
         };
     };
     let mut atoms: Vec<Atom> = tail
@@ -99,7 +99,11 @@ fn from_atoms(atoms: Vec<Atom>, unit_rad_s: f64) -> Vec<PointMode> {
 }
 
 fn require_count(count: usize) -> Result<(), InvalidInput> {
-    if (1..=MOST_REMAINDER_MODES).contains(&count) { Ok(()) } else { Err(InvalidInput::new("count", count, "1 to 4")) }
+    if (1..=MOST_REMAINDER_MODES).contains(&count) {
+        Ok(())
+    } else {
+        Err(InvalidInput::new("count", count, "a number from 1 to 4"))
+    }
 }
 
 fn highest(omega_rad_s: impl Iterator<Item = f64>) -> Option<f64> {
@@ -121,6 +125,6 @@ fn require_compliance(field: &'static str, compliance_m_n: f64) -> Result<f64, I
     if (0.0..=1e60).contains(&compliance_m_n) {
         Ok(compliance_m_n)
     } else {
-        Err(InvalidInput::new(field, compliance_m_n, "0 up to 1e60"))
+        Err(InvalidInput::new(field, compliance_m_n, "a number from 0 to 1e60"))
     }
 }

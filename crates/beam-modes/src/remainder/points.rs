@@ -45,16 +45,16 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
             return Err(InvalidInput::new(
                 ("tail", k, "shapes"),
                 format!("{} values", mode.shapes.len()),
-                "one value for each point, the same number in every mode",
+                "a list with one value for each point, as long as that of every other mode",
             ));
         }
     }
     if static_rest_m_n.len() != points * points {
         let given = format!("{} values", static_rest_m_n.len());
-        return Err(InvalidInput::new("static_rest_m_n", given, "the square of the number of points"));
+        return Err(InvalidInput::new("static_rest_m_n", given, "a square matrix with one row for each point"));
     }
     if let Some(entry) = static_rest_m_n.iter().find(|entry| entry.is_nan() || entry.abs() > 1e60) {
-        return Err(InvalidInput::new("static_rest_m_n", *entry, "numbers of at most 1e60 in size"));
+        return Err(InvalidInput::new("static_rest_m_n", *entry, "a matrix of numbers of at most 1e60 in size"));
     }
     let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
         return Ok(Vec::new());
@@ -79,7 +79,8 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
     };
     let first = Mat::from_fn(points, points, |i, j| over(moment(i, j, 1), i, j));
     let second = Mat::from_fn(points, points, |i, j| over(moment(i, j, 2), i, j));
-    let unsolved = || InvalidInput::new("tail", "as given", "modes whose moments double precision resolves");
+    let unsolved =
+        || InvalidInput::new("tail", "as given", "a list of modes whose moments double precision can resolve");
     let (values, vectors) = eigen(first.as_ref()).ok_or_else(unsolved)?;
     let largest = values.iter().copied().fold(0.0, f64::max);
     let kept: Vec<usize> = (0..points).filter(|&r| values[r] > DEPENDENT * largest).collect();

@@ -88,7 +88,12 @@ impl Collocation {
         self.check()?;
         let system = System::new(problem, t_end)?;
         let size = self.nodes * system.unknowns;
-        InvalidInput::unless(size <= MOST_EQUATIONS, "unknowns * nodes", size, "at most 8000 equations in a panel")?;
+        InvalidInput::unless(
+            size <= MOST_EQUATIONS,
+            "unknowns * nodes",
+            size,
+            "at most 8000, the largest number of equations in a panel",
+        )?;
         let rule = Rule::legendre(self.nodes);
         let interpolation = Interpolation::new(&rule);
         let dense = Dense::panels(system.unknowns, interpolation.clone());

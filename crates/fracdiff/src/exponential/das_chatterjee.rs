@@ -44,7 +44,7 @@ impl DasChatterjee {
         InvalidInput::unless((3..=500).contains(&states), "states", states, "a number from 3 to 500")?;
         InvalidInput::unless((-12.0..=12.0).contains(&beta1), "beta1", beta1, "a number from -12 to 12")?;
         let beta2_ok = beta2 > beta1 && beta2 <= 12.0;
-        InvalidInput::unless(beta2_ok, "beta2", beta2, "a number greater than beta1, at most 12")?;
+        InvalidInput::unless(beta2_ok, "beta2", beta2, "a number greater than beta1 and not greater than 12")?;
         Ok(Assembly::new(alpha, states).assemble(beta1, beta2))
     }
 

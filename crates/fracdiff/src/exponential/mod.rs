@@ -95,7 +95,11 @@ impl GalerkinStates {
                 }
                 let recipe = DasChatterjee::new(1.0 - fraction, self.states, self.beta1, self.beta2)?;
                 let mut sum = recipe.kernel().ok_or_else(|| {
-                    InvalidInput::new("states", self.states, "few enough for a matrix A positive definite to rounding")
+                    InvalidInput::new(
+                        "states",
+                        self.states,
+                        "smaller, so that the matrix A is positive definite to rounding",
+                    )
                 })?;
                 // The kernel of the method contains 1/Gamma(fraction).
                 sum.weights.iter_mut().for_each(|w| *w *= libm::tgamma(fraction));

@@ -30,7 +30,7 @@ impl ExponentialSum {
         InvalidInput::require_positive("t_min", t_min)?;
         InvalidInput::require_positive("t_max", t_max)?;
         let ordered = t_max >= t_min && (t_max / t_min).is_finite() && (1.0 / t_max).is_finite();
-        InvalidInput::unless(ordered, "t_max", t_max, "at least t_min, with a finite ratio to it")?;
+        InvalidInput::unless(ordered, "t_max", t_max, "not less than t_min, with a finite ratio to it")?;
         let tolerance_ok = (1e-14..=0.1).contains(&tolerance);
         InvalidInput::unless(tolerance_ok, "tolerance", tolerance, "a number from 1e-14 to 0.1")?;
         let digits = -tolerance.log10();

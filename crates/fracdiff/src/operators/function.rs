@@ -129,7 +129,7 @@ impl Estimate {
 }
 
 fn require_time(t: f64) -> Result<f64, InvalidInput> {
-    InvalidInput::unless(t.is_finite() && t >= 0.0, "t", t, "a finite number, at least 0").map(|()| t)
+    InvalidInput::unless(t.is_finite() && t >= 0.0, "t", t, "a finite number not less than 0").map(|()| t)
 }
 
 fn finite(value: f64, t: f64) -> Result<f64, InvalidInput> {

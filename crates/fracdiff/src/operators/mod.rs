@@ -18,7 +18,7 @@ const LARGEST_ORDER: f64 = 16.0;
 
 fn require_order(order: f64) -> Result<f64, InvalidInput> {
     let ok = order > 0.0 && order <= LARGEST_ORDER;
-    InvalidInput::unless(ok, "order", order, "a number greater than 0, at most 16").map(|()| order)
+    InvalidInput::unless(ok, "order", order, "a number greater than 0 and not greater than 16").map(|()| order)
 }
 
 /// The Riemann-Liouville derivative minus the Caputo derivative, from the derivatives at the start.

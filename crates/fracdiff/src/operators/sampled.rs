@@ -122,7 +122,7 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
 /// not finite.
 pub fn grunwald_letnikov(order: f64, step: f64, values: &[f64]) -> Result<Vec<f64>, InvalidInput> {
     let ok = order != 0.0 && order.abs() <= super::LARGEST_ORDER;
-    InvalidInput::unless(ok, "order", order, "a number other than 0 from -16 to 16")?;
+    InvalidInput::unless(ok, "order", order, "a number from -16 to 16 other than 0")?;
     InvalidInput::require_positive("step", step)?;
     require_finite("values", values)?;
     if values.is_empty() {
@@ -185,9 +185,9 @@ fn differentiated(times: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 fn require_samples(times: &[f64], values: &[f64], least: usize) -> Result<(), InvalidInput> {
-    let allowed = "at least 2 samples (5 for orders of 1 and above)";
+    let allowed = "at least 2, and at least 5 for orders of 1 and above";
     InvalidInput::unless(times.len() >= least, ["times", "len()"], times.len(), allowed)?;
-    InvalidInput::unless(values.len() == times.len(), ["values", "len()"], values.len(), "as many as times")?;
+    InvalidInput::unless(values.len() == times.len(), ["values", "len()"], values.len(), "the number of times")?;
     require_finite("times", times)?;
     require_finite("values", values)?;
     match times.windows(2).position(|w| w[1] <= w[0]) {

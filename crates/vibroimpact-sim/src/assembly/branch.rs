@@ -44,13 +44,13 @@ const LEAST_ASYMMETRY: f64 = 0.2;
 pub struct BranchSettings {
     /// Settings for each periodic motion.
     pub orbit: OrbitSettings,
-    /// The range of the parameter: the branch starts at the first value and goes towards the second.
+    /// Value of the parameter at which the branch starts.
     pub from: f64,
-    /// See `from`.
+    /// Value towards which the branch is followed; it ends there.
     pub to: f64,
-    /// First step, as a share of the range. Default 0.02.
+    /// First step, as a fraction of the range. Default 0.02.
     pub step: f64,
-    /// Longest step, as a share of the range. Default 0.05.
+    /// Longest step, as a fraction of the range. Default 0.05.
     pub longest_step: f64,
     /// Largest number of orbits. Default 500.
     pub max_orbits: usize,
@@ -73,9 +73,14 @@ impl BranchSettings {
         let range = self.from.is_finite() && self.to.is_finite() && self.from != self.to;
         InvalidInput::unless(range, "to", self.to, "a finite number other than the start of the branch")?;
         let step = self.step > 0.0 && self.step <= 0.5;
-        InvalidInput::unless(step, "step", self.step, "a positive part of the range, at most 0.5")?;
+        InvalidInput::unless(
+            step,
+            "step",
+            self.step,
+            "a fraction of the range, greater than 0 and not greater than 0.5",
+        )?;
         let longest = self.longest_step >= self.step && self.longest_step <= 0.5;
-        InvalidInput::unless(longest, "longest_step", self.longest_step, "from the first step to 0.5")?;
+        InvalidInput::unless(longest, "longest_step", self.longest_step, "a fraction of the range from step to 0.5")?;
         InvalidInput::unless(self.max_orbits > 0, "max_orbits", self.max_orbits, "at least 1")
     }
 }
@@ -84,7 +89,7 @@ impl BranchSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Special {
-    /// The parameter turns.
+    /// The branch turns back in the parameter.
     Fold,
     /// A multiplier passes -1.
     PeriodDoubling,
@@ -119,7 +124,7 @@ pub struct SpecialPoint {
     pub parameter: f64,
     /// Uncertainty of the parameter: half the distance of the two orbits on either side.
     pub uncertainty: f64,
-    /// Number of the orbit of the branch after it.
+    /// Index of the first orbit of the branch after the point.
     pub before_orbit: usize,
     /// An orbit within the uncertainty.
     pub orbit: Orbit,
@@ -130,7 +135,7 @@ pub struct SpecialPoint {
 pub struct Branch {
     /// The orbits in the order in which they were found.
     pub points: Vec<BranchPoint>,
-    /// Where stability or the pattern of contacts changes.
+    /// Points at which the stability or the pattern of contacts changes.
     pub special: Vec<SpecialPoint>,
     /// Whether the branch was followed to an end of the range, or back to that of half the period. If not, no orbit was found
     /// beyond the last one.

@@ -111,7 +111,7 @@ pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), 
         different,
         ("parameters", parameter, "offsets"),
         format!("{offsets:?}"),
-        "four different finite numbers",
+        "a list of four different finite numbers",
     )
 }
 
@@ -279,7 +279,7 @@ impl Solver<'_> {
             ends.iter().all(|end| *end > 0.0),
             ("parameters", i, "end_s"),
             format!("{ends:?}"),
-            "four positive times",
+            "a list of four positive times",
         )?;
         for (k, neighbour) in parameter.neighbours.iter().enumerate() {
             neighbour.check()?;
@@ -294,7 +294,7 @@ impl Solver<'_> {
                 |one: &[Point; 2], other: &[Point; 2]| one.each_ref().map(body_of) == other.each_ref().map(body_of);
             let contacts = neighbour.contacts.len() == own.sides.len()
                 && neighbour.contacts.iter().zip(&own.sides).all(|(one, other)| sides(&one.sides, other));
-            let allowed = "the bodies, modes and contacts of the assembly";
+            let allowed = "an assembly with the same numbers of bodies, modes and contacts";
             InvalidInput::unless(
                 bodies && contacts,
                 ("parameters", i, ("neighbours", k)),

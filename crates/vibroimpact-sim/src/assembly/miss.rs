@@ -20,7 +20,7 @@ const NEAR: f64 = 0.1;
 /// A contact that nearly closed, or one that nearly opened.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearMiss {
-    /// The contact, by its place in the list.
+    /// Index of the contact in the list of the assembly.
     pub contact: usize,
     /// Whether it was closed and nearly opened.
     pub was_closed: bool,

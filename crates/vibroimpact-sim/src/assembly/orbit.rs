@@ -68,7 +68,7 @@ impl OrbitSettings {
         InvalidInput::unless(self.forcing_periods > 0, "forcing_periods", self.forcing_periods, "at least 1")?;
         InvalidInput::unless(self.max_iterations > 0, "max_iterations", self.max_iterations, "at least 1")?;
         let closure = (1e-13..=0.1).contains(&self.closure);
-        InvalidInput::unless(closure, "closure", self.closure, "1e-13 to 0.1")
+        InvalidInput::unless(closure, "closure", self.closure, "a number from 1e-13 to 0.1")
     }
 }
 
@@ -77,9 +77,9 @@ impl OrbitSettings {
 pub struct SideMotion {
     /// Amplitude of the displacement at the lowest frequency of the loads (m).
     pub displacement_first_harmonic_m: f64,
-    /// Largest and least displacement (m).
+    /// Largest displacement (m).
     pub displacement_max_m: f64,
-    /// See `displacement_max_m`.
+    /// Least displacement (m).
     pub displacement_min_m: f64,
 }
 
@@ -243,7 +243,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         assembly.check()?;
         let CommonPeriod { period_s: forcing_period_s, cycles } = CommonPeriod::of(&assembly.loads)?;
         if let Some(i) = assembly.loads.iter().position(|load| matches!(load.force, Force::Sampled { .. })) {
-            let allowed = "constant and harmonic loads, which repeat themselves";
+            let allowed = "a constant or harmonic load, because a sampled load is not periodic";
             return Err(InvalidInput::new(("loads", i), "a sampled load", allowed));
         }
         let mut runs = Settings::until(forcing_period_s * f64::from(settings.forcing_periods));

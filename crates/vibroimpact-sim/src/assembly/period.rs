@@ -32,7 +32,12 @@ impl CommonPeriod {
             })
         };
         let slowest = harmonic().map(|(_, omega)| omega).fold(f64::INFINITY, f64::min);
-        InvalidInput::unless(slowest.is_finite(), "loads", "no harmonic load", "at least one harmonic load")?;
+        InvalidInput::unless(
+            slowest.is_finite(),
+            "loads",
+            "no harmonic load",
+            "a list with at least one harmonic load",
+        )?;
         let mut cycles = 1;
         for (i, omega) in harmonic() {
             let repeats = |cycles: &u32| {

@@ -50,7 +50,7 @@ pub enum Point {
     Ground,
     /// A point of a body, by the mass-normalised shapes of the body's modes there (kg^-1/2).
     OfBody {
-        /// Number of the body.
+        /// Index of the body in [`Assembly::bodies`], from 0.
         body: usize,
         /// `phi_k` at the point (kg^-1/2), one value for each mode.
         shape: Vec<f64>,
@@ -99,7 +99,7 @@ pub enum Force {
 /// A load on a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// Number of the body.
+    /// Index of the body in [`Assembly::bodies`], from 0.
     pub body: usize,
     /// Modal force per unit of [`Load::force`]: the shapes at the loaded point (kg^-1/2) for a force in N; the modes'
     /// participation `int m phi_k dx` (kg^1/2) for an acceleration field, whose "force" is then in m/s^2.
@@ -161,31 +161,41 @@ impl Settings {
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         let endless = self.stop_when_over && self.end_s == f64::INFINITY;
         let within = (0.0..=1e12).contains(&self.end_s) && self.end_s > 0.0;
-        InvalidInput::unless(within || endless, "end_s", self.end_s, "a positive number up to 1e12 s")?;
+        InvalidInput::unless(within || endless, "end_s", self.end_s, "a positive number of at most 1e12 s")?;
         let from = (0.0..=SCALE_MAX).contains(&self.rest_from_s);
-        InvalidInput::unless(from, "rest_from_s", self.rest_from_s, "0 or a positive number of seconds, at most 1e30")?;
+        InvalidInput::unless(
+            from,
+            "rest_from_s",
+            self.rest_from_s,
+            "0 or a positive number of seconds, and at most 1e30",
+        )?;
         let before_end = self.statistics_from_s >= 0.0 && self.statistics_from_s < self.end_s;
-        let allowed = "0 or a positive number of seconds, less than end_s";
+        let allowed = "0 or a positive number of seconds, and less than end_s";
         InvalidInput::unless(before_end, "statistics_from_s", self.statistics_from_s, allowed)?;
         InvalidInput::unless(
             (FINEST_TOLERANCE..=0.1).contains(&self.tolerance),
             "tolerance",
             self.tolerance,
-            "1e-13 to 0.1",
+            "a number from 1e-13 to 0.1",
         )?;
         InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
         InvalidInput::unless(self.max_intervals > 0, "max_intervals", self.max_intervals, "at least 1")
     }
 }
 
-const FINITE: &str = "a finite number, at most 1e30 in size";
+const FINITE: &str = "a finite number of at most 1e30 in size";
 
 fn is_finite(value: f64) -> bool {
     value.abs() <= SCALE_MAX
 }
 
 fn require_all_finite(values: &[f64], count: usize, field: &'static str) -> Result<(), InvalidInput> {
-    InvalidInput::unless(values.len() == count, field, format!("{} values", values.len()), "one value a mode")?;
+    InvalidInput::unless(
+        values.len() == count,
+        field,
+        format!("{} values", values.len()),
+        "a list with one value for each mode",
+    )?;
     let wrong = values.iter().position(|value| !is_finite(*value));
     wrong.map_or(Ok(()), |k| Err(InvalidInput::new((field, k), values[k], FINITE)))
 }
@@ -241,10 +251,10 @@ impl<L> Assembly<L> {
         Ok(())
     }
 
-    /// A shape of a body that there is, with one value a mode.
+    /// A shape of a body that there is, with one value for each mode.
     fn require_shape(&self, body: usize, shape: &[f64]) -> Result<(), InvalidInput> {
         let found = self.bodies.get(body).map(|body| body.modes.len());
-        let modes = found.ok_or_else(|| InvalidInput::new("body", body, "the number of a body, from 0"))?;
+        let modes = found.ok_or_else(|| InvalidInput::new("body", body, "the index of a body, counted from 0"))?;
         require_all_finite(shape, modes, "shape")
     }
 
@@ -267,7 +277,7 @@ impl<L> Assembly<L> {
             !resonant,
             ["force", "omega_rad_s"],
             omega_rad_s,
-            "a frequency other than that of an undamped mode which the load excites, or a damped mode",
+            "other than the frequency of every undamped mode that the load excites; damping of that mode removes the resonance",
         )
     }
 }
@@ -277,10 +287,10 @@ impl Body {
         for (k, mode) in self.modes.iter().enumerate() {
             let of = |quantity| ("modes", k, quantity);
             let omega = mode.omega_rad_s;
-            let allowed = "0 (rigid body) up to 1e15 rad/s";
+            let allowed = "a number from 0 (for a rigid body) to 1e15 rad/s";
             InvalidInput::unless((0.0..=OMEGA_MAX_RAD_S).contains(&omega), of("omega_rad_s"), omega, allowed)?;
             let zeta = mode.damping_ratio;
-            InvalidInput::unless((0.0..=1e6).contains(&zeta), of("damping_ratio"), zeta, "0 up to 1e6")?;
+            InvalidInput::unless((0.0..=1e6).contains(&zeta), of("damping_ratio"), zeta, "a number from 0 to 1e6")?;
         }
         require_all_finite(&self.amplitude, self.modes.len(), "amplitude")?;
         require_all_finite(&self.rate, self.modes.len(), "rate")
@@ -302,7 +312,7 @@ impl Force {
             Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
                 InvalidInput::unless(is_finite(*force_n), "force_n", *force_n, FINITE)?;
                 InvalidInput::unless(is_finite(*phase_rad), "phase_rad", *phase_rad, FINITE)?;
-                let allowed = "a positive number up to 1e15 rad/s";
+                let allowed = "a positive number of at most 1e15 rad/s";
                 let within = *omega_rad_s > 0.0 && *omega_rad_s <= OMEGA_MAX_RAD_S;
                 InvalidInput::unless(within, "omega_rad_s", *omega_rad_s, allowed)
             }
@@ -310,7 +320,7 @@ impl Force {
                 require_all_finite(times_s, times_s.len(), "times_s")?;
                 let count = format!("{} values", forces_n.len());
                 let equal = forces_n.len() == times_s.len();
-                InvalidInput::unless(equal, "forces_n", count, "one value a time")?;
+                InvalidInput::unless(equal, "forces_n", count, "a list with one value for each time")?;
                 require_all_finite(forces_n, times_s.len(), "forces_n")?;
                 let wrong = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1]);
                 wrong.map_or(Ok(()), |i| {

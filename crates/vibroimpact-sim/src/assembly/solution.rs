@@ -99,9 +99,9 @@ pub struct Statistics {
     pub impulse_n_s: f64,
     /// Largest force (N).
     pub largest_force_n: f64,
-    /// `int F^2 dt` (N^2 s): over this time, the square of the root mean square of the force.
+    /// `int F^2 dt` (N^2 s). Divided by the time that the statistics cover, it is the mean square of the force.
     pub squared_force_n2_s: f64,
-    /// `int F xi' dt` while the compression grows (J): over this time, the contact work rate.
+    /// `int F xi' dt` while the compression grows (J). Divided by the time that the statistics cover, it is the contact work rate.
     pub compression_work_j: f64,
     /// `int F xi' dt` (J): the energy that the contact has received, stored or dissipated.
     pub work_j: f64,

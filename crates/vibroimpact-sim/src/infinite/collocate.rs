@@ -7,7 +7,7 @@ use super::rule::dot;
 /// `x_i + sum_j m_ij f(x_j) = known_i` with `f = x_+^(3/2)`, and memory for its solution, reused from panel to panel.
 #[derive(Debug, Default)]
 pub(super) struct Equations {
-    /// `m`, a row a node and one more for the end of the panel.
+    /// `m`, a row for each node and one more for the end of the panel.
     pub matrix: Vec<f64>,
     /// Right-hand side at the nodes and at the end.
     pub known: Vec<f64>,

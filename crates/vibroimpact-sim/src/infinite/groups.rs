@@ -33,7 +33,7 @@ pub struct Material {
     pub density_kg_m3: f64,
 }
 
-/// What an infinite beam opposes to an impact.
+/// Bending stiffness and mass of an infinite beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamSection {
     /// Flexural rigidity `E I` (N m^2).
@@ -50,7 +50,7 @@ impl From<Segment> for BeamSection {
     }
 }
 
-/// What a thin infinite plate opposes to an impact.
+/// Bending stiffness and mass of a thin infinite plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlateSection {
     /// Flexural rigidity `E h^3 / (12 (1 - nu^2))` (N m).
@@ -88,7 +88,12 @@ impl Material {
         InvalidInput::require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
         InvalidInput::require_positive("density_kg_m3", self.density_kg_m3)?;
         let ratio = self.poissons_ratio > -1.0 && self.poissons_ratio <= 0.5;
-        InvalidInput::unless(ratio, "poissons_ratio", self.poissons_ratio, "above -1, at most 0.5")
+        InvalidInput::unless(
+            ratio,
+            "poissons_ratio",
+            self.poissons_ratio,
+            "a number greater than -1 and not greater than 0.5",
+        )
     }
 
     /// Hertz stiffness `2 E sqrt(R) / (3 (1 - nu^2))` (N/m^1.5) of a body with local radius `R` on a

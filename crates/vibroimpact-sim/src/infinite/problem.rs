@@ -58,11 +58,11 @@ impl Default for Settings {
 
 impl Settings {
     pub(super) fn check(&self) -> Result<(), InvalidInput> {
-        InvalidInput::unless(NODES.contains(&self.nodes), "nodes", self.nodes, "8 to 32")?;
+        InvalidInput::unless(NODES.contains(&self.nodes), "nodes", self.nodes, "a number from 8 to 32")?;
         let tolerance = (1e-14..=1e-3).contains(&self.tolerance);
-        InvalidInput::unless(tolerance, "tolerance", self.tolerance, "1e-14 to 1e-3")?;
+        InvalidInput::unless(tolerance, "tolerance", self.tolerance, "a number from 1e-14 to 1e-3")?;
         let horizon = (0.0..=1e12).contains(&self.horizon);
-        InvalidInput::unless(horizon, "horizon", self.horizon, "0 to 1e12 (units of T)")?;
+        InvalidInput::unless(horizon, "horizon", self.horizon, "a number from 0 to 1e12, in units of T")?;
         InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")?;
         InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")
     }

@@ -76,7 +76,12 @@ impl Receptance {
     /// [`InvalidInput`] for another number of terms, a coefficient that is not positive, or a power that is neither 0
     /// nor from 0.1 to 0.9.
     pub fn new(terms: &[Term]) -> Result<Receptance, InvalidInput> {
-        InvalidInput::unless((1..=MOST_TERMS).contains(&terms.len()), "terms", terms.len(), "1 to 8 terms")?;
+        InvalidInput::unless(
+            (1..=MOST_TERMS).contains(&terms.len()),
+            "terms",
+            terms.len(),
+            "a number of terms from 1 to 8",
+        )?;
         for (i, term) in terms.iter().enumerate() {
             let within = |fault: InvalidInput| fault.within(Step::Index(i)).within("terms");
             InvalidInput::require_positive("coefficient", term.coefficient).map_err(within)?;

@@ -51,7 +51,7 @@ impl FirstContact {
     /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
     /// ```
     pub fn at_speed(speed: f64, n: usize) -> Result<FirstContact, InvalidInput> {
-        InvalidInput::unless((1e-3..=1e4).contains(&speed), "speed", speed, "1e-3 to 1e4")?;
+        InvalidInput::unless((1e-3..=1e4).contains(&speed), "speed", speed, "a number from 1e-3 to 1e4")?;
         follow(Given::Speed, speed.ln(), n, "speed", speed)
     }
 
@@ -156,7 +156,7 @@ impl Grid {
 
 /// Follows the physical branch from the gentle limit to `ln(v)` or `ln(S)` = `target`.
 fn follow(given: Given, target: f64, n: usize, field: &'static str, value: f64) -> Result<FirstContact, InvalidInput> {
-    InvalidInput::unless((2..=16).contains(&n), "n", n, "2 to 16")?;
+    InvalidInput::unless((2..=16).contains(&n), "n", n, "a number from 2 to 16")?;
     let grid = Grid::new(n);
     // gentle limit: m v / tau = (v tau)^(3/2), tau = 1 / RIGID_DURATION
     let tau = 1.0 / RIGID_DURATION;
@@ -183,7 +183,7 @@ fn follow(given: Given, target: f64, n: usize, field: &'static str, value: f64) 
         .chain([mu, nu])
         .collect();
     let nothing = || {
-        let allowed = "a value up to which the branch with f >= 0 can be followed with n functions";
+        let allowed = "smaller, because the branch with f >= 0 cannot be followed to this value with n functions";
         InvalidInput::new(field, value, allowed)
     };
     let (mut at, mut step) = (gentle, 0.1_f64);

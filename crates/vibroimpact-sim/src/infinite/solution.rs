@@ -83,7 +83,7 @@ pub struct Extremum {
     pub time: f64,
     /// Compression (units of `v T`).
     pub compression: f64,
-    /// Minimum or maximum.
+    /// Whether it is a minimum; otherwise it is a maximum.
     pub minimum: bool,
 }
 

@@ -64,7 +64,7 @@ pub fn critical_s() -> CriticalS {
 /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
 /// ```
 pub fn turning_point(n: usize) -> Result<TurningPoint, InvalidInput> {
-    InvalidInput::unless((1..=MOST_TURNING_POINTS).contains(&n), "n", n, "1 to 60")?;
+    InvalidInput::unless((1..=MOST_TURNING_POINTS).contains(&n), "n", n, "a number from 1 to 60")?;
     Ok(near(n, critical_s().s, 2.0, 1.0).0)
 }
 
@@ -73,7 +73,7 @@ pub fn turning_point(n: usize) -> Result<TurningPoint, InvalidInput> {
 /// # Errors
 /// [`InvalidInput`] if `count` is above [`MOST_TURNING_POINTS`].
 pub fn turning_points(count: usize) -> Result<Vec<TurningPoint>, InvalidInput> {
-    InvalidInput::unless(count <= MOST_TURNING_POINTS, "count", count, "0 to 60")?;
+    InvalidInput::unless(count <= MOST_TURNING_POINTS, "count", count, "a number from 0 to 60")?;
     let critical = critical_s().s;
     let mut points: Vec<TurningPoint> = Vec::new();
     let (mut guess, mut step) = (10.0, 1.0);

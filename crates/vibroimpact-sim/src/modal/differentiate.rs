@@ -164,7 +164,12 @@ impl Solver {
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
                 let found = neighbour.structure.modes.len();
                 let field = ("parameters", i, ("neighbours", place, ["structure", "modes"]));
-                InvalidInput::unless(found == count, field, format!("{found} modes"), "as many as the structure has")?;
+                InvalidInput::unless(
+                    found == count,
+                    field,
+                    format!("{found} modes"),
+                    "a list with as many modes as the structure has",
+                )?;
                 neighbour.check()?;
             }
         }

@@ -76,13 +76,13 @@ impl Structure {
         for (k, mode) in self.modes.iter().enumerate() {
             let fault = |field, value: f64, allowed| Err(InvalidInput::new(("modes", k, field), value, allowed));
             if !(0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s) {
-                return fault("omega_rad_s", mode.omega_rad_s, "0 (rigid body) up to 1e15 rad/s");
+                return fault("omega_rad_s", mode.omega_rad_s, "a number from 0 (for a rigid body) to 1e15 rad/s");
             }
             if !(0.0..=1e6).contains(&mode.damping_ratio) {
                 return fault("damping_ratio", mode.damping_ratio, "0 up to 1e6");
             }
             if mode.shape.is_nan() || mode.shape.abs() > SCALE_MAX {
-                return fault("shape", mode.shape, "a finite number, at most 1e30 in size");
+                return fault("shape", mode.shape, "a finite number of at most 1e30 in size");
             }
         }
         Ok(())
@@ -122,7 +122,7 @@ impl Striker {
             self.speed_m_s.abs() <= SCALE_MAX,
             "speed_m_s",
             self.speed_m_s,
-            "a finite number, at most 1e30 in size",
+            "a finite number of at most 1e30 in size",
         )
     }
 }
@@ -150,11 +150,16 @@ impl Start {
     /// Names the field, its value and what would be allowed.
     pub fn check(&self, modes: usize) -> Result<(), InvalidInput> {
         for (field, values) in [("amplitude", &self.amplitude), ("rate", &self.rate)] {
-            InvalidInput::unless(values.len() == modes, field, format!("{} values", values.len()), "one value a mode")?;
+            InvalidInput::unless(
+                values.len() == modes,
+                field,
+                format!("{} values", values.len()),
+                "a list with one value for each mode",
+            )?;
             for (k, value) in values.iter().enumerate() {
                 let ok = value.abs() <= SCALE_MAX;
                 if !ok {
-                    let allowed = "a finite number, at most 1e30 in size";
+                    let allowed = "a finite number of at most 1e30 in size";
                     return Err(InvalidInput::new((field, k), *value, allowed));
                 }
             }
@@ -163,7 +168,7 @@ impl Start {
             (0.0..=SCALE_MAX).contains(&self.gap_m),
             "gap_m",
             self.gap_m,
-            "0 (touching) or a positive finite number",
+            "0, if the bodies touch, or a positive finite number",
         )
     }
 }
@@ -208,10 +213,15 @@ impl Settings {
     /// # Errors
     /// Names the field, its value and what would be allowed.
     pub fn check(&self) -> Result<(), InvalidInput> {
-        InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
+        InvalidInput::unless(
+            (1e-13..=0.1).contains(&self.tolerance),
+            "tolerance",
+            self.tolerance,
+            "a number from 1e-13 to 0.1",
+        )?;
         InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")?;
         InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
         let until = (0.0..=SCALE_MAX).contains(&self.until_s);
-        InvalidInput::unless(until, "until_s", self.until_s, "0 or a positive number of seconds, at most 1e30")
+        InvalidInput::unless(until, "until_s", self.until_s, "0 or a positive number of seconds, and at most 1e30")
     }
 }

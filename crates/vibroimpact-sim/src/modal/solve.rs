@@ -252,7 +252,7 @@ impl Solver {
             striker.mass_kg.is_finite() || !self.moved.is_empty(),
             "mass_kg",
             striker.mass_kg,
-            "a finite mass, where no mode of the structure moves at the contact",
+            "finite, because no mode of the structure moves at the contact",
         )?;
 
         let impact = Impact { striker, law, start, settings };

@@ -1,7 +1,7 @@
 //! The same impact in another unit of time: its result is the same, while its dyadic steps differ.
 //!
-//! Steps are powers of two of a second. Two solutions of different tolerances share many of them, and so what these steps
-//! get wrong. With times written in another unit all steps lie between those of before.
+//! Steps are powers of two of a second. Two solutions of different tolerances share many of these steps and therefore their
+//! errors. With times written in another unit, every step differs from those in seconds.
 
 use super::problem::{Mode, Start, Striker};
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};

@@ -11,7 +11,7 @@ use super::rod::Rod;
 use crate::scene::json::{found, quote, read};
 use crate::scene::{InvalidInput, Location, MovingMode, SceneError, Structure};
 
-/// A body; `"kind"` tells which.
+/// A body, of the kind that `"kind"` names.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 #[non_exhaustive]
@@ -55,7 +55,7 @@ pub struct Elastic {
     pub structure: Elastics,
     /// Number of modes, from the lowest; required where they are computed. When left out: all that are listed.
     pub modes: Option<usize>,
-    /// Whether the truncated modes answer with their static compliance; `false` when left out.
+    /// Whether the truncated modes respond with their static compliance; `false` when left out.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub residual_compliance: bool,
     /// Uniform velocity at the start of a body that is free to translate (m/s); 0 when left out.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize as DeriveSerialize};
 use serde_json::{Map, Value};
 
 use super::fields::{BETWEEN, FIELDS};
-use crate::scene::fields::look_up;
+use crate::scene::fields::{POSITIVE, look_up};
 use crate::scene::json::{quote, read};
 use crate::scene::require_positive;
 use crate::scene::{self, InvalidInput, Location, Striker};
@@ -33,7 +33,7 @@ pub struct Contact {
     #[schemars(schema_with = "any_number")]
     pub gap_m: f64,
     /// Whether a second contact stands on the other side of A, at the same distance and with the same law, as in a
-    /// clearance; `false` when left out. `NAME+` is the contact as it stands here, which pushes A along `+x`, `NAME-` the one
+    /// clearance; `false` when left out. `NAME+` is the contact as it is given here, which pushes A along `+x`, `NAME-` the one
     /// that pushes A along `-x`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub two_sided: bool,
@@ -189,11 +189,11 @@ impl Contact {
         let place = ["mass_kg", "radius_m", "speed_m_s"].iter().position(|name| fault.field == *name);
         match place.map(|place| self.references()[place]) {
             Some((field, None)) => {
-                let needed = match field {
-                    "radius_m" => "needed for a stiffness from materials",
-                    _ => "needed for a damping from restitution",
+                let needed_for = match field {
+                    "radius_m" => "stiffness from materials",
+                    _ => "damping from restitution",
                 };
-                InvalidInput::missing(field, format!("{needed}: a finite number greater than 0"))
+                InvalidInput::missing(field, format!("{POSITIVE}, because the {needed_for} needs it"))
             }
             Some((field, Some(_))) => fault.under(field),
             None => fault,

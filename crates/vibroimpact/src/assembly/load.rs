@@ -86,7 +86,7 @@ impl Course<'_> {
         let (name, amplitude) = self.amplitude;
         let (list, values) = self.values;
         if let Some(file) = self.file {
-            let allowed = "replaced by its table: AssemblyScene::read does it, or AssemblyScene::read_tables";
+            let allowed = "replaced by its table, as AssemblyScene::read and AssemblyScene::read_tables do";
             return Err(InvalidInput::new("file", format!("{file:?}"), allowed));
         }
         let sampled = !self.times_s.is_empty() || !values.is_empty();
@@ -102,7 +102,7 @@ impl Course<'_> {
             return self.sampled();
         }
         let Some(force_n) = amplitude else {
-            let allowed = format!("give {name}, or times_s and {list}, or file");
+            let allowed = format!("given; times_s and {list} may take its place, or file");
             return Err(InvalidInput::missing(name, allowed));
         };
         match (self.frequency_hz, self.phase_deg) {
@@ -113,7 +113,7 @@ impl Course<'_> {
             }
             (None, None) if self.constant => Ok(Force::Constant { force_n }),
             (None, Some(phase_deg)) if self.constant => {
-                Err(InvalidInput::new("phase_deg", number(phase_deg), "left out where there is no frequency_hz"))
+                Err(InvalidInput::new("phase_deg", number(phase_deg), "left out in the absence of frequency_hz"))
             }
             (None, _) => Err(InvalidInput::missing("frequency_hz", "a finite number greater than 0")),
         }
@@ -128,7 +128,7 @@ impl Course<'_> {
             } else {
                 (list, values.len(), "times_s", times.len())
             };
-            let allowed = format!("at least two values, and as many as {other} has, which is {count}");
+            let allowed = format!("a list of at least two values, and as long as {other}, which has {count}");
             return Err(InvalidInput::new(field, format!("{length} values"), allowed));
         }
         for (field, values) in [("times_s", times), (list, values)] {
@@ -152,7 +152,7 @@ pub(super) fn require_finite(field: impl Into<invalid_input::Path>, value: f64) 
     if value.abs() <= LARGEST {
         Ok(())
     } else {
-        Err(InvalidInput::new(field, number(value), "a finite number, at most 1e30 in size"))
+        Err(InvalidInput::new(field, number(value), "a finite number of at most 1e30 in size"))
     }
 }
 
@@ -237,8 +237,7 @@ fn read_history(folder: &Path, file: &str, column: &str) -> Result<(Vec<f64>, Ve
     let read = || {
         let table = Table::parse(&bytes, &needed)?;
         let list = |name: &str| {
-            let place = table.column(name, &needed)?;
-            let place = place.ok_or_else(|| InvalidInput::missing(format!("column {name}"), needed.as_str()))?;
+            let place = table.needed_column(name, &needed)?;
             table.rows.iter().map(|row| row.number(place, name)).collect::<Result<Vec<f64>, InvalidInput>>()
         };
         Ok((list("time_s")?, list(column)?))

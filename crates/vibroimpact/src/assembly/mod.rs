@@ -144,8 +144,8 @@ pub struct AssemblyScene {
     pub loads: Vec<Load>,
     /// A motion of the ground; at rest when left out.
     pub ground_motion: Option<GroundMotion>,
-    /// Whether elastic modes start at their static deflection under gravity and the constant loads, contacts left out of
-    /// account; `false`, undeformed, when left out.
+    /// Whether elastic modes start at their static deflection under gravity and the constant loads, without the contacts; `false`,
+    /// undeformed, when left out.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub static_start: bool,
     /// Time at which the run ends (s).
@@ -153,7 +153,7 @@ pub struct AssemblyScene {
     /// Time from which statistics of the contacts are taken (s), before `end_s`, as after a transient motion; 0 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub statistics_from_s: Option<f64>,
-    /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far, 1e-13 to 0.1;
+    /// Allowed error of the impulse on a step, relative to the largest momentum exchanged by its contact so far, 1e-13 to 0.1;
     /// 1e-9 when left out.
     #[schemars(range(min = 1e-13, max = 0.1))]
     pub tolerance: Option<f64>,

@@ -62,7 +62,7 @@ impl AssemblyScene {
             let posed = bodies.contact(contact).map_err(|fault| beside(fault, ("contacts", i)))?;
             for (name, posed) in posed {
                 if name.is_empty() || names.contains(&name) {
-                    let allowed = "a text that names no other contact";
+                    let allowed = "a text that is the name of no other contact";
                     return Err(InvalidInput::new(("contacts", i, "name"), format!("{name:?}"), allowed));
                 }
                 names.push(name);
@@ -187,7 +187,11 @@ impl<'a> Bodies<'a> {
             return Err(InvalidInput::new("bodies", "{}", "an object with at least one named body"));
         }
         if let Some(name) = given.keys().find(|name| ["", "ground"].contains(&name.as_str())) {
-            return Err(InvalidInput::new("bodies", format!("{name:?}"), "bodies with names other than \"ground\""));
+            return Err(InvalidInput::new(
+                "bodies",
+                format!("{name:?}"),
+                "another name, because the empty name and \"ground\" do not name bodies",
+            ));
         }
         let sides = scene.contacts.iter().flat_map(|contact| &contact.between).filter_map(|side| match side {
             Side::Ground(_) => None,
@@ -210,7 +214,7 @@ impl<'a> Bodies<'a> {
     fn point(&mut self, point: &Point) -> Result<(usize, Vec<f64>), InvalidInput> {
         let Some(body) = self.given.keys().position(|name| *name == point.body) else {
             let names = self.given.keys().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
-            return Err(InvalidInput::new("body", format!("{:?}", point.body), format!("one of the bodies, {names}")));
+            return Err(InvalidInput::new("body", format!("{:?}", point.body), format!("one of the bodies {names}")));
         };
         let place = Place { location_m: point.location_m, location: point.location.as_deref() };
         Ok((body, self.seen[body].shape(place)?))
@@ -230,11 +234,11 @@ impl<'a> Bodies<'a> {
         if sides[0] == sides[1] {
             return Err(match &contact.between[1] {
                 Side::Ground(_) => {
-                    let allowed = "a point of a body where the other side is the ground";
+                    let allowed = "a point of a body, because the other side is the ground";
                     InvalidInput::new(("between", 1), "\"ground\"", allowed)
                 }
                 Side::Body(point) => {
-                    let allowed = "a body or a location other than those of the first point";
+                    let allowed = "another body than that of the first point, or the same body at another location";
                     InvalidInput::new(("between", 1, "body"), format!("{:?}", point.body), allowed)
                 }
             });
@@ -275,7 +279,7 @@ fn moving(body: &Elastic, seen: &mut Seen) -> Result<assembly::Body, InvalidInpu
             ("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, &mut moving.rate),
         ] {
             if first.len() > count {
-                let allowed = format!("at most {count} values, the number of modes");
+                let allowed = format!("a list of at most {count} values, the number of modes");
                 return Err(of_start(InvalidInput::new(field, format!("{} values", first.len()), allowed)));
             }
             for (k, value) in first.iter().enumerate() {
@@ -298,7 +302,7 @@ fn moving(body: &Elastic, seen: &mut Seen) -> Result<assembly::Body, InvalidInpu
         require_finite("velocity_m_s", body.velocity_m_s).map_err(|fault| seen.of_body(fault))?;
         let participation = seen.participation("velocity_m_s")?;
         if !is_free(seen, &participation) {
-            let allowed = "0, or left out: the body is not free to translate";
+            let allowed = "0 or left out, because the body is not free to translate";
             let value = number(body.velocity_m_s);
             return Err(seen.of_body(InvalidInput::new("velocity_m_s", value, allowed)));
         }

@@ -26,7 +26,7 @@ impl JsonSchema for Body {
         let beside = Elastic::json_schema(generator).to_value();
         let elastic = std::iter::once(rod).chain(structures).map(|(form, computed)| body(form, &beside, computed));
         let forms: Vec<Value> = std::iter::once(Mass::json_schema(generator).to_value()).chain(elastic).collect();
-        schemars::json_schema!({ "description": "A body; `\"kind\"` tells which.", "type": "object", "oneOf": forms })
+        schemars::json_schema!({ "description": "A body, of the kind that `\"kind\"` names.", "type": "object", "oneOf": forms })
     }
 }
 

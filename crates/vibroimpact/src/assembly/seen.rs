@@ -39,7 +39,7 @@ impl<'a> Seen<'a> {
                 let listed =
                     matches!(body.structure, Elastics::Structure(Structure::Modal(_) | Structure::ModesFile(_)));
                 if !listed && !given.is_empty() {
-                    let allowed = "left out: it is computed for this kind";
+                    let allowed = "left out, because it is computed for this kind of body";
                     let value = format!("{} values", given.len());
                     return Err(seen.of_body(InvalidInput::new("gravity_participation_kg0_5", value, allowed)));
                 }
@@ -79,7 +79,7 @@ impl<'a> Seen<'a> {
     /// The remainder modes of a beam, computed in block form for all its contacts and loads together.
     fn remainder_of(&self, body: &Elastic) -> Result<Vec<PointsMode>, InvalidInput> {
         let Elastics::Structure(Structure::Beam(beam)) = &body.structure else {
-            let allowed = "false: only beams have remainder modes here";
+            let allowed = "false, because only beams have remainder modes in a scene of bodies";
             return Err(self.of_body(InvalidInput::new("residual_compliance", "true", allowed)));
         };
         let kept = body.modes.unwrap_or_default();
@@ -99,7 +99,7 @@ impl<'a> Seen<'a> {
     pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match self.body {
             Body::Mass(mass) => {
-                place.require_none("left out: a mass moves as a whole")?;
+                place.require_none("left out, because a mass moves as a whole")?;
                 Ok(vec![Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: mass.mass_kg.sqrt().recip() }])
             }
             Body::Elastic(body) => self.elastic(body, place),
@@ -109,7 +109,7 @@ impl<'a> Seen<'a> {
     fn elastic(&mut self, body: &Elastic, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match &body.structure {
             Elastics::Rod(rod) => {
-                place.require_no_name("left out: the location on a rod is location_m")?;
+                place.require_no_name("left out, because the location on a rod is stated by location_m")?;
                 let needed = "a finite number from 0 to the length of the rod";
                 let location_m =
                     place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?.along()?;
@@ -155,12 +155,12 @@ impl<'a> Seen<'a> {
                 Ok(computed)
             }
             None if given.is_empty() => {
-                let allowed = format!("needed for {needed_for}: a list of finite numbers, one a mode");
+                let allowed = format!("a list of finite numbers, one for each mode, because {needed_for} needs it");
                 Err(self.of_body(InvalidInput::missing(field, allowed)))
             }
-            // more than one a mode only where the scene takes the first modes of its list
+            // more values than modes are allowed only where the scene takes the first modes of its list
             None if given.len() < self.modes.len() || body.modes.is_none() && given.len() > self.modes.len() => {
-                let allowed = format!("one value a mode, which is {}", self.modes.len());
+                let allowed = format!("a list with one value for each mode, which is {}", self.modes.len());
                 Err(self.of_body(InvalidInput::new(field, values(), allowed)))
             }
             None => {
@@ -204,7 +204,7 @@ fn check_mass(mass: &Mass) -> Result<(), InvalidInput> {
     let most = LARGEST / mass.mass_kg.sqrt().max(1.0);
     for (field, value) in [("position_m", mass.position_m), ("velocity_m_s", mass.velocity_m_s)] {
         if value.is_nan() || value.abs() > most {
-            let allowed = format!("a finite number, at most {most:e} in size for this mass");
+            let allowed = format!("a finite number of at most {most:e} in size for this mass");
             return Err(InvalidInput::new(field, number(value), allowed));
         }
     }

@@ -10,14 +10,15 @@ use super::source::SceneSource;
 use super::voice::signature;
 
 pub const PLAN_EXAMPLES: &str = "Examples:
-  vibroimpact plan ball.json                     each model: does it apply, expected error, cost
+  vibroimpact plan ball.json                     for each model: whether it applies, its expected error, its cost
   vibroimpact plan ball.json --json              the same as one JSON object
 
-No costly impact is solved. A scene chooses with these fields, each of which may be left out:
+No costly impact is solved. These fields of the scene determine the choice, and each of them may be left out:
 
   \"model\": \"auto\", \"rigid\", \"infinite-beam\", \"modal\" or \"emoc\"
   \"modes\": \"auto\", or the number of modes that the structure is stated to have
-  \"tolerance\": accuracy of the restitution, truncation included where modes are chosen; 1e-3";
+  \"tolerance\": requested accuracy of the restitution, which includes truncation where the program chooses the modes;
+               1e-3 by default";
 
 pub const COMPARE_EXAMPLES: &str = "Examples:
   vibroimpact compare ball.json                  restitution, uncertainty, cost of every model

@@ -80,7 +80,7 @@ impl Kind {
 fn toml_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    if is_toml || name == "-" { Ok(path) } else { Err("allowed is a file name that ends in .toml, or -".to_owned()) }
+    if is_toml || name == "-" { Ok(path) } else { Err("it must be a file name that ends in .toml, or -".to_owned()) }
 }
 
 /// Runs `demo` and returns the text to print.

@@ -27,11 +27,11 @@ of the scene; measured quantities; and, for each of these or for none, its stand
 
 Measured quantities are restitution, striker_velocity_m_s, first_contact_s, first_impulse_n_s, first_peak_force_n,
 last_separation_s, impulse_n_s, peak_force_n, peak_compression_m; and the force over time, as a table time_s,force_n whose
-name is in the column force_file (its noise in force_n_sd). The clock of the gauge may be off by any amount; a delay of its
-response is a parameter as well, --free gauge.time_constant_s=1e-6..1e-4. An empty cell was not measured.
+name is in the column force_file (its noise in force_n_sd). The clock of the gauge may have any offset; a delay of its
+response is a parameter as well, --free gauge.time_constant_s=1e-6..1e-4. An empty cell is a quantity that was not measured.
 
-The search for a free field begins at its value in the scene and extends over a factor of three to either side, or between
-stated limits (field=low..high), beyond which it may go if they are positive. Without standard deviations the noise is
+The search for a free field begins at its value in the scene. It extends over a factor of three to either side, or between
+the stated limits (field=low..high); a field with positive limits may end beyond them. Without standard deviations the noise is
 estimated from the misfit. Intervals are those of the likelihood profile.";
 
 /// The data, the scene, and its free fields.
@@ -48,10 +48,10 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD", value_delimiter = ',', required = true)]
     free: Vec<String>,
     /// Starting points of the search
-    #[arg(long, value_name = "N", default_value_t = 4)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<usize>, default_value_t = 4)]
     starts: usize,
-    /// Probability with which an interval holds its field
-    #[arg(long, default_value_t = 0.95)]
+    /// Probability with which an interval contains the true value of its field
+    #[arg(long, value_parser = super::real, default_value_t = 0.95)]
     level: f64,
     /// Possible experiments (CSV), which are ranked by the information that they would give
     #[arg(long, value_name = "FILE")]

@@ -37,7 +37,7 @@ pub struct Arguments {
     #[command(flatten)]
     changes: Changes,
     /// The nondimensional parameter S, in place of a scene
-    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", value_parser = super::real, allow_hyphen_values = true)]
     s: Option<f64>,
     #[command(flatten)]
     products: Products,
@@ -51,7 +51,7 @@ enum Study {
     /// List the critical S and the turning points, at which the n-th separation disappears
     TurningPoints {
         /// Number of turning points, from the first (at the largest S); 1 to 60
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", value_parser = super::whole::<usize>)]
         count: usize,
         /// Print one JSON object in place of the table
         #[arg(long)]
@@ -67,7 +67,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             let scene = changes.draft(&path)?.impact()?;
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
-                let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
+                let allowed = "infinite-beam; vibroimpact simulate solves scenes of every kind".to_owned();
                 return Err(InvalidInput::new(["structure", "kind"], kind, allowed).into());
             }
             products.require_room()?;

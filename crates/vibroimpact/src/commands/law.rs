@@ -11,7 +11,7 @@ pub const EXAMPLES: &str = "Examples:
                                      the same for an engine with this step, and its deviation
   vibroimpact law --restitution 0.5 --mass-kg 0.1 --speed-m-s 2 --step-s 0.002 --law mujoco --json
 
-Most engines and papers compute the damping by an approximate formula. For a wanted restitution of 0.5 the result is 0.550
+Most engines and papers compute the damping by an approximate formula. For a requested restitution of 0.5 the result is 0.550
 (MuJoCo, and spring and dashpot by exp(-pi z/sqrt(1-z^2)), since the force ends before the gap opens), 0.663 (Hunt and
 Crossley), 0.725 (Lankarani and Nikravesh) or 0.470 (Flores). Here the damping follows from the exact relation; \"by the
 paper\" is the restitution that results from the published formula.
@@ -20,14 +20,14 @@ The damping depends on the restitution (and on the speed of approach), the stiff
 bodies state the mass of the other body as --other-mass-kg.
 
 With a fixed step the first touch may lie anywhere within a step, so the restitution has a range. \"at the step\" is for
-semi-implicit Euler (MuJoCo and most engines). With the parameters \"for the step\" the mean of that range is the wanted
-restitution. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
+semi-implicit Euler (MuJoCo and most engines). With the parameters \"for the step\" the mean of that range is the
+requested restitution. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
 
 /// The requested restitution and what it refers to.
 #[derive(Args)]
 pub struct Arguments {
     /// Restitution: speed of separation over speed of approach, from 0.001 to 1
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = super::real, allow_negative_numbers = true)]
     restitution: f64,
     /// Mass of the striker
     #[arg(long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Time step of an engine that steps by semi-implicit Euler
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_s: Option<f64>,
-    /// Only this law
+    /// Print only this law
     #[arg(long, value_enum)]
     law: Option<Kind>,
     /// Print one JSON object in place of the table
@@ -55,7 +55,7 @@ pub struct Arguments {
 /// The value of an option that asks for a quantity.
 fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse().ok().filter(|value| (1e-30..=1e30).contains(value));
-    value.ok_or_else(|| format!("allowed is {POSITIVE}"))
+    value.ok_or_else(|| format!("it must be {POSITIVE}"))
 }
 
 /// Runs the command and returns the text to print.

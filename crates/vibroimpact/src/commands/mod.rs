@@ -25,10 +25,20 @@ use vibroimpact::scene::MOST_MODES;
 use vibroimpact::vibroimpact_sim::modal::Striker;
 use vibroimpact::{InvalidInput, Scene, scene, text};
 
+/// The value of an option that asks for a whole number.
+fn whole<T: std::str::FromStr>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|_| "it must be a whole number not less than 0".to_owned())
+}
+
+/// The value of an option that asks for a number.
+fn real(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "it must be a number".to_owned())
+}
+
 /// The value of an option that asks for a number of modes.
 fn mode_count(text: &str) -> Result<usize, String> {
     let count = text.parse().ok().filter(|count| (1..=MOST_MODES).contains(count));
-    count.ok_or_else(|| format!("allowed is a whole number from 1 to {MOST_MODES}"))
+    count.ok_or_else(|| format!("it must be a whole number from 1 to {MOST_MODES}"))
 }
 
 /// The error for a number of modes that an option gave.

@@ -16,7 +16,7 @@ pub const EXAMPLES: &str = "Examples:
                                                  shapes along the beam or over the plate, with the location of impact;
                                                  .svg or .png
 
-Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";
+Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first and have omega 0.";
 
 /// The modes to list.
 #[derive(Args)]

@@ -14,7 +14,7 @@ use super::{mode_count, of_option};
 const EMOC_MODES: &str = "--emoc-modes";
 
 pub const EMOC_EXAMPLES: &str = "Examples:
-  vibroimpact emoc ball.json                               all parameters 1, where nothing has been fitted
+  vibroimpact emoc ball.json                               with all parameters 1, if nothing has been fitted
   vibroimpact emoc ball.json --mu0 0.5 --alpha0 8 --alpha1 0.3 --emoc-modes 50 --json
 
 Nothing is integrated in time: the restitution is that of least kinetic energy after the impact under the law's

@@ -38,11 +38,11 @@ The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writi
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// Periods of the load after which the motion repeats itself; of several loads, their common periods
+    /// Periods of the load after which the motion repeats itself; for several loads, their common periods
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
     /// Periods of the load that are followed from the start before the search
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<u32>, default_value_t = 100)]
     transient: u32,
     /// Periods of the load that are followed in search of near returns if the transient leads to no periodic motion
     #[arg(long, value_name = "N", default_value_t = 1500, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
@@ -51,13 +51,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD", requires = "to")]
     over: Option<String>,
     /// First value of the field; default: that of the scene
-    #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
+    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_negative_numbers = true)]
     from: Option<f64>,
     /// Value towards which the branch is followed
-    #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
+    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_negative_numbers = true)]
     to: Option<f64>,
-    /// First step, as a share of the range
-    #[arg(long, value_name = "PART", requires = "over", default_value_t = 0.02)]
+    /// First step, as a fraction of the range
+    #[arg(long, value_name = "PART", requires = "over", value_parser = super::real, default_value_t = 0.02)]
     step: f64,
     /// How often to follow the branches of twice the period that begin at period doublings: 1 for those of the branch itself,
     /// 2 also for theirs, and so on

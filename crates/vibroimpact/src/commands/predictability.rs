@@ -18,8 +18,8 @@ The blur is the standard deviation of a field about its value on the map, or abo
 the field (normally distributed), or a share of its value in per cent (its logarithm normally distributed). Every point of the
 map has the same number of draws. The folder contains a picture of median and spread (report.html), distribution.csv with mean,
 standard deviation and quantiles at every point and their sampling errors, and every draw (results.csv). What is mapped is the
-restitution; of a scene of bodies it is the intervals of contact, the largest force and the contact work rate. Ctrl-C stops;
-the same command continues from there.
+restitution; of a scene of bodies it is the intervals of contact, the largest force and the contact work rate. Ctrl-C stops
+the map; the same command continues from there.
 
 The exit code is 0 for a finished map, 130 for one that was stopped, 2 for a scene, field or number that cannot be used, 1 if
 reading or writing fails."#;
@@ -29,17 +29,17 @@ reading or writing fails."#;
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// A field to map, its first and last value, and the number of values; `:log` spaces them by equal ratios. Once or twice
+    /// A field to map, its first and last value, and the number of values; `:log` spaces them by equal ratios; may be given twice
     #[arg(long, required = true, value_name = "FIELD=FROM:TO:COUNT", value_parser = over)]
     over: Vec<Over>,
     /// A field that is not known exactly, and its standard deviation: a number, or per cent of its value
     #[arg(long, required = true, value_name = "FIELD=WIDTH", value_parser = blur)]
     blur: Vec<Blur>,
     /// Draws at each point, rounded down to 16 times a power of two
-    #[arg(long, value_name = "N", default_value_t = 256)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<u64>, default_value_t = 256)]
     draws: u64,
     /// Seed of the draws
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<u64>, default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
     run: Run,
@@ -56,7 +56,7 @@ fn over(text: &str) -> Result<Over, &'static str> {
         let (from, to, count) = (from.parse().ok()?, to.parse().ok()?, count.parse().ok()?);
         Some(Over { field: field.to_owned(), from, to, count, scale })
     };
-    read().ok_or("give FIELD=FROM:TO:COUNT or FIELD=FROM:TO:COUNT:log, as in location_m=0.05:0.95:46")
+    read().ok_or("it must be FIELD=FROM:TO:COUNT or FIELD=FROM:TO:COUNT:log, as in location_m=0.05:0.95:46")
 }
 
 fn blur(text: &str) -> Result<Blur, &'static str> {
@@ -68,7 +68,7 @@ fn blur(text: &str) -> Result<Blur, &'static str> {
         };
         Some(Blur { field: field.to_owned(), width })
     };
-    read().ok_or("give FIELD=WIDTH, as in location_m=0.001 or striker.speed_m_s=1%")
+    read().ok_or("it must be FIELD=WIDTH, as in location_m=0.001 or striker.speed_m_s=1%")
 }
 
 /// Runs the command and returns the text to print.

@@ -71,7 +71,7 @@ fn is_there(path: &Path) -> bool {
 pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
     match path {
         Some(path) if !force && is_there(path) => {
-            let allowed = "this file exists; name another, or replace it with --force";
+            let allowed = "the name of a new file, because this file exists; --force replaces it";
             Err(InvalidInput::new(option, path.display().to_string(), allowed))
         }
         _ => Ok(()),
@@ -81,13 +81,13 @@ pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<()
 /// A file name with the ending of a picture.
 fn picture_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
-    Format::of(&path).map(|_| path).ok_or_else(|| format!("allowed is {}", Format::ENDINGS))
+    Format::of(&path).map(|_| path).ok_or_else(|| format!("it must be {}", Format::ENDINGS))
 }
 
 fn page_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     let is_page = path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|e| ending.eq_ignore_ascii_case(e)));
-    if is_page { Ok(path) } else { Err("allowed is a file name that ends in .html".to_owned()) }
+    if is_page { Ok(path) } else { Err("it must be a file name that ends in .html".to_owned()) }
 }
 
 impl Products {
@@ -102,7 +102,7 @@ impl Products {
             && !self.force
             && let Some(name) = Files::NAMES.into_iter().find(|name| is_there(&folder.join(name)))
         {
-            let allowed = format!("this folder holds {name} already; name another folder, or replace it with --force");
+            let allowed = format!("a folder without {name}, which this one contains; --force replaces it");
             return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
         }
         for (option, path) in [("--plot", &self.plot), ("--report", &self.report)] {

@@ -32,7 +32,7 @@ Schema.";
 /// The shell to complete in.
 #[derive(Args)]
 pub struct CompletionsArguments {
-    /// Which shell
+    /// The shell
     shell: Shell,
 }
 

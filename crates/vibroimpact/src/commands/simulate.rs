@@ -33,8 +33,8 @@ A scene with bodies in place of structure and striker is followed until its end_
 on long runs, and Ctrl-C keeps what was found. Then --out writes history.csv, intervals.csv and .parquet, run.svg,
 report.html, result.json, and section.csv where a load is harmonic.
 
-The exit code is 0 for every result, sustained contact and a computation that stopped among them, 2 for a scene that cannot be
-used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
+The exit code is 0 for every result, including sustained contact and a computation that stopped early, 2 for a scene that
+cannot be used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
 
 /// The scene to solve, and where its result goes.
 #[derive(Args)]
@@ -53,11 +53,11 @@ pub struct Extent {
     /// Write an animation of beam and ball in slow motion to this file, .svg
     #[arg(long, value_name = "FILE", value_parser = svg_file)]
     animate: Option<PathBuf>,
-    /// End of histories and pictures, from the start; default: a little after the last contact
+    /// Time at which histories and pictures end, from the start of the impact; default: a little after the last contact
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Largest number of intervals of contact that are listed for a scene of bodies; files hold all
-    #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
+    /// Largest number of intervals of contact that are listed for a scene of bodies; the files contain all
+    #[arg(long, value_name = "N", value_parser = super::whole::<usize>, default_value_t = MOST_INTERVALS)]
     intervals: usize,
 }
 
@@ -74,7 +74,7 @@ impl Extent {
             None => Ok(()),
             Some(until) => {
                 let allowed = format!(
-                    "left out: the model {} gives the net result alone; \"model\": \"modal\" resolves the motion in time",
+                    "left out, because the model {} gives the net result alone; \"model\": \"modal\" resolves the motion in time",
                     model.as_str()
                 );
                 Err(InvalidInput::new("--until", until.to_string(), allowed))
@@ -87,8 +87,8 @@ impl Extent {
         match &self.animate {
             None => Ok(()),
             Some(path) => {
-                let allowed = "left out for this scene: only an impact on a beam or a string that is resolved in time can \
-                               be shown";
+                let allowed = "left out for this scene, because only an impact on a beam or a string that is resolved in \
+                               time can be shown";
                 Err(InvalidInput::new("--animate", path.display().to_string(), allowed))
             }
         }
@@ -98,12 +98,12 @@ impl Extent {
 fn svg_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    if is_svg { Ok(path) } else { Err("allowed is a file name that ends in .svg".to_owned()) }
+    if is_svg { Ok(path) } else { Err("it must be a file name that ends in .svg".to_owned()) }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && seconds.is_finite());
-    seconds.ok_or_else(|| "allowed is a time in seconds, a finite number greater than 0".to_owned())
+    seconds.ok_or_else(|| "it must be a time in seconds, a finite number greater than 0".to_owned())
 }
 
 /// Runs the command and returns the text to print.

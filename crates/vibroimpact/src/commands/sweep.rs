@@ -20,7 +20,7 @@ pub const SWEEP_EXAMPLES: &str = r#"Examples:
   vibroimpact sweep sweep.json --out part-3/ --shard 3/8       the third of eight parts, for a job array
   mpirun -n 64 vibroimpact sweep sweep.json --out results/ --mpi
 
-A sweep file holds a scene (or names one) and the fields that vary:
+A sweep file contains a scene (or names one) and the fields that vary:
 
   { "scene_file": "ball.json",
     "vary": [ { "field": "location_m", "from": 0.02, "to": 0.98, "count": 25 },
@@ -28,8 +28,8 @@ A sweep file holds a scene (or names one) and the fields that vary:
               { "field": "structure.damping_ratio", "values": [0, 0.02] } ],
     "random": { "seed": 1, "draws": 10, "fields": [ { "field": "striker.speed_m_s", "from": 0.5, "to": 2 } ] } }
 
-In place of "random" fields may be known as distributions; the restitution (of bodies, any "outputs" of "sampling") is then
-reported as one, with sampling errors:
+In place of "random", fields may be given as distributions. The restitution is then reported as a distribution with sampling
+errors; for a scene of bodies this holds for the results that "outputs" in "sampling" names:
 
   { "scene_file": "ball.json",
     "uncertain": { "location_m": { "normal": [0.4, 1e-3] }, "striker.speed_m_s": { "uniform": [0.9, 1.1] } },
@@ -39,7 +39,8 @@ The axes of "vary" form a grid, whose last axis runs fastest; each of its points
 gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes are the same for any number of
 threads, parts and ranks. A scene that cannot be solved is a row with its error.
 
-Ctrl-C stops; the same command continues from there, also after a crash. A folder with anything else in it is rejected.
+Ctrl-C stops the sweep; the same command continues from there, also after a crash. A folder with anything else in it is
+rejected.
 Exit codes: 0 finished, 130 stopped, 2 for input that cannot be used (nothing is computed, or no point could be solved),
 1 if reading or writing fails. With the output redirected, lines on the standard error report the progress."#;
 
@@ -87,7 +88,7 @@ pub struct MergeArguments {
     /// The folders of the parts
     #[arg(required = true, value_name = "DIR")]
     parts: Vec<PathBuf>,
-    /// The folder for the whole
+    /// The folder for the joined sweep
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Print one JSON object in place of the summary
@@ -96,7 +97,7 @@ pub struct MergeArguments {
 }
 
 fn part(text: &str) -> Result<Part, &'static str> {
-    Part::parse(text).ok_or("give K/N with whole numbers, K from 1 to N, N at most 1000000")
+    Part::parse(text).ok_or("it must be K/N with whole numbers, where K is from 1 to N, and N is at most 1000000")
 }
 
 /// Runs the command `sweep` and returns the text to print.

@@ -19,8 +19,8 @@ const FORCE_FILE: &str = "force_file";
 pub(super) const FORCE: &str = "force_n";
 const SD: &str = "_sd";
 
-const NEEDED: &str = "a table of comma-separated values whose line of names holds fields of the scene and what was \
-                      measured: quantities, their standard deviations (restitution_sd and so on), force_file";
+const NEEDED: &str = "a table of comma-separated values whose line of names contains fields of the scene and what was \
+                      measured: quantities, their standard deviations (restitution_sd and so on), or force_file";
 
 /// Measured impacts, one per row.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,7 +81,7 @@ impl Data {
         let table = Table::parse(bytes, NEEDED)?;
         let columns = Columns::of(&table)?;
         if columns.measured.is_empty() && columns.force.is_none() {
-            let allowed = format!("at least one column of what was measured: {}, or {FORCE_FILE}", Quantity::names());
+            let allowed = format!("in at least one column, whose name is one of {}, {FORCE_FILE}", Quantity::names());
             return Err(InvalidInput::missing("a measured quantity", allowed).into());
         }
         let sds = columns.measured.iter().map(|(_, _, sd)| *sd).chain(columns.force.map(|(_, sd)| sd));
@@ -90,14 +90,14 @@ impl Data {
             let names = columns.measured.iter().map(|(quantity, _, sd)| (quantity.name(), *sd));
             let lacks = names.chain(columns.force.map(|(_, sd)| (FORCE, sd))).find(|(_, sd)| sd.is_none());
             let name = lacks.map_or("", |(name, _)| name);
-            let allowed = "a column of standard deviations for every measured quantity, or for none: they are then \
-                           estimated";
+            let allowed = "in the table, because there is a column of standard deviations for another quantity; without any \
+                           such column they are estimated";
             return Err(InvalidInput::missing(format!("column {name}{SD}"), allowed).into());
         }
         let rows = columns.rows(&table, open)?;
         let values = rows.iter().map(|row| row.measured.len() + usize::from(row.force.is_some())).sum::<usize>();
         if values == 0 {
-            return Err(InvalidInput::new("measured values", "0", "at least one in the table").into());
+            return Err(InvalidInput::new("measured values", "0", "at least 1").into());
         }
         Ok(Data { fields: columns.fields(), rows, stated })
     }
@@ -119,7 +119,7 @@ impl Data {
         let columns = Columns::of(&table)?;
         let too_much = columns.measured.first().map(|(quantity, ..)| quantity.name());
         if let Some(name) = too_much.or(columns.force.map(|_| FORCE_FILE)) {
-            let allowed = "left out of a table of candidates, which holds fields of the scene only";
+            let allowed = "left out of a table of candidates, which contains fields of the scene only";
             return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed).into());
         }
         let rows = columns.rows(&table, &|_| Ok(Vec::new()))?;
@@ -136,7 +136,7 @@ struct Columns {
 
 impl Columns {
     fn of(table: &Table) -> Result<Columns, InvalidInput> {
-        let column = |name: &str| table.column(name, NEEDED);
+        let column = |name: &str| table.column(name);
         let sd_of = |name: &str| column(&format!("{name}{SD}"));
         let mut columns = Columns { fields: Vec::new(), measured: Vec::new(), force: None };
         for (place, name) in table.header.iter().enumerate() {
@@ -150,7 +150,7 @@ impl Columns {
                 let beside = if quantity == FORCE { FORCE_FILE } else { quantity };
                 if !known || column(beside)?.is_none() {
                     let allowed = format!(
-                        "beside the column of what it is the standard deviation of: {}, {FORCE}",
+                        "beside the column of the quantity whose standard deviation it is, one of {}, {FORCE}",
                         Quantity::names()
                     );
                     return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed));
@@ -173,7 +173,7 @@ impl Columns {
 
     fn rows(&self, table: &Table, open: &dyn Fn(&Path) -> Result<Vec<u8>, SceneError>) -> Result<Vec<Row>, SceneError> {
         if table.rows.is_empty() || table.rows.len() > MOST_ROWS {
-            let allowed = format!("1 to {MOST_ROWS} below the line of names");
+            let allowed = format!("from 1 to {MOST_ROWS}, without the line of names");
             return Err(InvalidInput::new("number of rows", table.rows.len().to_string(), allowed).into());
         }
         table.rows.iter().map(|cells| self.row(cells, open)).collect()

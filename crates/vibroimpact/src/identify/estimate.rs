@@ -82,24 +82,24 @@ pub fn identify(scene: &Scene, data: &Data, free: &[Free], request: &Request) ->
 fn require(data: &Data, free: &[Free], request: &Request) -> Result<(), InvalidInput> {
     let fault = |field: &str, value: String, allowed: &str| Err(InvalidInput::new(field, value, allowed));
     if !(1..=MOST_FREE).contains(&free.len()) {
-        return fault("--free", format!("{} fields", free.len()), "1 to 12 fields");
+        return fault("--free", format!("{} fields", free.len()), "a list of 1 to 12 fields");
     }
     for (i, one) in free.iter().enumerate() {
         if free[..i].iter().any(|before| before.field == one.field) {
-            return fault("--free", one.field.clone(), "each field once");
+            return fault("--free", one.field.clone(), "stated only once");
         }
         if data.fields.iter().any(|field| field.to_string() == one.field) {
             return fault("--free", one.field.clone(), "a field that the table does not state in each row");
         }
         if one.is_of_gauge() && data.rows.iter().all(|row| row.force.is_none()) {
-            return fault("--free", one.field.clone(), "left out where the table names no force_file");
+            return fault("--free", one.field.clone(), "left out, because the table names no force_file");
         }
     }
     if !(0.5..=0.999).contains(&request.level) {
         return fault("--level", number(request.level), "a probability from 0.5 to 0.999");
     }
     if !(1..=1000).contains(&request.starts) {
-        return fault("--starts", request.starts.to_string(), "1 to 1000 starting points");
+        return fault("--starts", request.starts.to_string(), "a number of starting points from 1 to 1000");
     }
     let values: usize = data.rows.iter().map(|row| row.measured.len()).sum();
     let records = || data.rows.iter().filter_map(|row| row.force.as_ref());
@@ -107,8 +107,8 @@ fn require(data: &Data, free: &[Free], request: &Request) -> Result<(), InvalidI
     let needed = free.len() + records().count() + usize::from(!data.stated);
     if values + samples < needed {
         let allowed = format!(
-            "at least {needed}: one for each free field and for the offset of each force history, and one more where \
-             no standard deviations are stated"
+            "at least {needed}, which is one for each free field and for the offset of each force history, and one more \
+             if no standard deviations are stated"
         );
         return fault("number of measured values", (values + samples).to_string(), &allowed);
     }

@@ -64,7 +64,8 @@ impl<'a> Model<'a> {
         for (i, row) in data.rows.iter().enumerate() {
             let scene = model.scene(row, start)?;
             if scene.is_infinite() {
-                let allowed = "a structure with modes: a beam, string or plate with ends, a rod, or a list of modes";
+                let allowed =
+                    "that of a structure with modes: a beam, string or plate with ends, a rod, or a list of modes";
                 return Err(InvalidInput::new(["structure", "kind"], scene.structure.kind(), allowed));
             }
             let in_line = |fault| in_line(row, fault);
@@ -112,7 +113,7 @@ impl<'a> Model<'a> {
     pub fn require_candidates(&self, candidates: &Data, parameters: &[f64]) -> Result<(), InvalidInput> {
         let is_free = |field: &&FieldPath| self.free.iter().any(|free| free.field == field.to_string());
         if let Some(field) = candidates.fields.iter().find(is_free) {
-            let allowed = "left out of a table of candidates: the field is free";
+            let allowed = "left out of a table of candidates, because the field is free";
             return Err(InvalidInput::new(format!("column {field}"), "1 column", allowed));
         }
         self.for_table(candidates)
@@ -138,7 +139,8 @@ impl<'a> Model<'a> {
         let mut set = |path: &FieldPath, value: Value| {
             let told = quote(&value);
             if let Err(reason) = path.set(&mut tree, value) {
-                faults = Err(InvalidInput::new(path.path().clone(), told, reason));
+                faults =
+                    Err(InvalidInput::new(path.path().clone(), told, format!("a field of the scene, but {reason}")));
             }
         };
         for (field, value) in self.data.fields.iter().zip(&row.values) {

@@ -12,7 +12,7 @@ pub(super) const TIME_CONSTANT: &str = "gauge.time_constant_s";
 /// Without stated limits the search covers this factor on either side of the value in the scene.
 const FACTOR: f64 = 3.0;
 const WAY: &str =
-    "a field of the scene that is a number, alone or as field=low..high with two finite numbers, low < high";
+    "a field of the scene that is a number, alone or as field=low..high with two finite numbers and low < high";
 
 /// A free field, and the interval of its search.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,7 @@ impl Free {
             (Some(limits), _) => limits,
             (None, start) if start > 0.0 => (start / FACTOR, start * FACTOR),
             (None, start) => {
-                let allowed = "a value greater than 0 in the scene, or limits of the search: field=low..high";
+                let allowed = "greater than 0 in the scene, or have limits of the search, as in field=low..high";
                 return Err(InvalidInput::new(name, number(start), allowed));
             }
         };
@@ -79,7 +79,7 @@ impl Free {
     fn start(&self, tree: &Value, name: &str) -> Result<f64, InvalidInput> {
         if self.is_of_gauge() {
             let (low, high) = self.search.filter(|(low, _)| *low > 0.0).ok_or_else(|| {
-                let allowed = "limits greater than 0, which the scene cannot give: gauge.time_constant_s=1e-6..1e-3";
+                let allowed = "an interval with limits greater than 0, as in gauge.time_constant_s=1e-6..1e-3, because the scene does not state the field";
                 InvalidInput::missing(format!("{name}=low..high"), allowed)
             })?;
             return Ok((low * high).sqrt());

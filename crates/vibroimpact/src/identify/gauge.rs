@@ -47,8 +47,7 @@ impl ForceRecord {
         let read = || -> Result<ForceRecord, InvalidInput> {
             let table = Table::parse(bytes, NEEDED)?;
             let column = |name: &str| -> Result<Vec<f64>, InvalidInput> {
-                let place = table.column(name, NEEDED)?;
-                let place = place.ok_or_else(|| InvalidInput::missing(format!("column {name}"), NEEDED))?;
+                let place = table.needed_column(name, NEEDED)?;
                 table.rows.iter().map(|row: &Row| row.number(place, name)).collect()
             };
             let (time_s, force_n) = (column("time_s")?, column("force_n")?);
@@ -57,7 +56,7 @@ impl ForceRecord {
                 return Err(table.rows[i].fault(fault));
             }
             if !(LEAST..=MOST).contains(&time_s.len()) {
-                let allowed = format!("{LEAST} to {MOST} samples");
+                let allowed = format!("a number from {LEAST} to {MOST}");
                 return Err(InvalidInput::new("number of samples", time_s.len().to_string(), allowed));
             }
             Ok(ForceRecord { file: file.to_owned(), time_s, force_n })

@@ -90,7 +90,7 @@ pub struct Noise {
 /// A test of the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LackOfFit {
-    /// The test.
+    /// Name of the test.
     pub test: String,
     /// Sum of squares, ratio of variances, or correlation.
     pub statistic: f64,

@@ -123,8 +123,8 @@ impl<'a> Work<'a> {
             for (k, (quantity, measured, _)) in row.measured.iter().enumerate() {
                 if !values.get(k).is_some_and(|value| value.is_finite()) {
                     let field = format!("line {}, {}", row.line, quantity.name());
-                    let allowed = "a quantity that the impact has with the scene's values; this impact does not end in a \
-                                   rebound, or has no contact";
+                    let allowed = "a quantity that the impact has with the scene's values, because this impact does not end in \
+                                   a rebound, or has no contact";
                     return Err(InvalidInput::new(field, number(*measured), allowed));
                 }
             }
@@ -228,7 +228,7 @@ impl<'a> Work<'a> {
                 |found: &Result<Fit, FitError>| found.as_ref().map_or(f64::INFINITY, |found| found.sum_of_squares);
             let best = fits.into_iter().min_by(|a, b| sum(a).total_cmp(&sum(b)));
             let found = best.unwrap_or(Err(FitError::NonFiniteModel { starts })).map_err(|fault| {
-                let allowed = format!("such as the model can be fitted to ({fault})");
+                let allowed = format!("such that the model can be fitted to them ({fault})");
                 InvalidInput::new("number of measured values", self.measured.len().to_string(), allowed)
             })?;
             self.parameters.clone_from(&found.parameters);

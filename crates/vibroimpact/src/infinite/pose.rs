@@ -38,7 +38,7 @@ impl Posed {
 }
 
 impl Scene {
-    /// The impact on an infinite structure by Hertz contact, which a single number tells, in the terms of its solver.
+    /// The impact on an infinite structure by Hertz contact, which a single number describes, in the terms of its solver.
     ///
     /// # Errors
     /// As [`Scene::posed_on_infinite`], and a law other than Hertz's.
@@ -59,7 +59,11 @@ impl Scene {
     pub fn infinite_impact(&self) -> Result<infinite::Impact, InvalidInput> {
         self.posed_on_infinite()?.hertz.ok_or_else(|| {
             let law = format!("\"{}\"", self.contact.law_name());
-            InvalidInput::new(["contact", "law"], law, "hertz, the law whose impacts depend on one number")
+            InvalidInput::new(
+                ["contact", "law"],
+                law,
+                "hertz, because only with this law the impact depends on a single number",
+            )
         })
     }
 
@@ -84,7 +88,9 @@ impl Scene {
     /// ```
     pub fn posed_on_infinite(&self) -> Result<Posed, InvalidInput> {
         let left_out = |field: Path, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
+            Some(value) => {
+                Err(InvalidInput::new(field, value, "left out, because an infinite structure does not have it"))
+            }
             None => Ok(()),
         };
         left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
@@ -116,7 +122,7 @@ impl Scene {
                 return Err(InvalidInput::new(
                     ["structure", "kind"],
                     format!("\"{}\"", self.structure.kind()),
-                    "infinite-beam, infinite-plate",
+                    "infinite-beam or infinite-plate",
                 ));
             }
         }

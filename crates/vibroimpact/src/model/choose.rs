@@ -71,10 +71,10 @@ impl Scene {
         let scene = open.as_ref().map_or(self, |(scene, _)| scene);
         let mut choice = match (scene.model, modal_only(scene)) {
             (Model::Auto | Model::Modal, Some(_)) => stated::stated(scene, kept, &mut cost)?,
-            (forced, Some(why)) => return Err(refused(forced, format!("auto or modal: {why}"))),
+            (forced, Some(why)) => return Err(refused(forced, format!("auto or modal, because {why}"))),
             (Model::Auto, None) => auto(&mut Pose::new(scene, kept)?, &mut cost)?,
             (forced, None) => forced_tier(forced, &mut Pose::new(scene, kept)?, &mut cost)?
-                .map_err(|reason| refused(forced, reason))?,
+                .map_err(|reason| refused(forced, format!("another model, because {reason}")))?,
         };
         if let Some((_, why)) = &open {
             choice.answer.reason += &format!("; {why}");
@@ -86,8 +86,8 @@ impl Scene {
 }
 
 /// The error for a model that was requested and is not available.
-pub(super) fn refused(model: Model, reason: String) -> InvalidInput {
-    InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason)
+pub(super) fn refused(model: Model, allowed: String) -> InvalidInput {
+    InvalidInput::new("model", format!("\"{}\"", model.as_str()), allowed)
 }
 
 impl Scene {

@@ -103,7 +103,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
 /// The law, because it was requested.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     if !pose.approaches() {
-        return Ok(Err("another model where the striker does not approach".to_owned()));
+        return Ok(Err("the striker does not approach".to_owned()));
     }
     let class = class(pose)?;
     let duration_s = pose.wall.duration_s;
@@ -115,7 +115,7 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let mass_kg = pose.striker.mass_kg;
     let modes = pose.first(count, cost)?;
     if modes.iter().any(|mode| mode.omega_rad_s == 0.0 && mode.shape != 0.0) {
-        return Ok(Err("another model: the law is for structures that do not move freely as a rigid body".to_owned()));
+        return Ok(Err("the structure moves freely as a rigid body, for which the law is not made".to_owned()));
     }
     let restitution = law(VALIDATED.c, VALIDATED.q, mass_kg, duration_s, modes);
     let count = modes.len();

@@ -211,10 +211,10 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let beam = match Uniform::new(pose)? {
         Ok(beam) => beam,
-        Err(reason) => return Ok(Err(format!("another model: {reason}"))),
+        Err(reason) => return Ok(Err(reason)),
     };
     if !pose.approaches() {
-        return Ok(Err("another model where the striker does not approach".to_owned()));
+        return Ok(Err("the striker does not approach".to_owned()));
     }
     Ok(solve(pose, &beam, cost)?.map(|(choice, _)| choice))
 }
@@ -231,7 +231,9 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let settings = infinite::Settings { tolerance: 1e-8, nodes: 12, estimate_uncertainty: false, ..Default::default() };
     let solution = match infinite::solve(infinite::Structure::Beam, groups.s, &settings) {
         Ok(solution) => solution,
-        Err(fault) => return Ok(Err(format!("S = {} cannot be solved: {}", small(groups.s), fault.allowed))),
+        Err(fault) => {
+            return Ok(Err(format!("S = {} cannot be solved; it must be {}", small(groups.s), fault.allowed)));
+        }
     };
     cost.solves += 1;
     cost.panels += solution.panels_tried as u64;
@@ -309,7 +311,7 @@ impl Scene {
             return Ok(());
         }
         let value = format!("\"{}\"", self.model.as_str());
-        Err(InvalidInput::new("model", value, "auto or infinite-beam for a structure without ends"))
+        Err(InvalidInput::new("model", value, "auto or infinite-beam, because the structure has no ends"))
     }
 
     /// The solution for an infinite structure as an answer.

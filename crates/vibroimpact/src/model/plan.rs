@@ -64,7 +64,7 @@ pub struct Estimate {
     pub model: Model,
     /// Whether it reaches the tolerance.
     pub applies: bool,
-    /// The reason.
+    /// The reason why it applies or does not.
     pub reason: String,
     /// Expected error of the restitution; null where nothing is known.
     pub expected_error: Option<f64>,
@@ -171,7 +171,7 @@ impl Scene {
     /// The plan if there is no choice.
     fn plan_of_modes(&self, why: &str) -> Result<Plan, InvalidInput> {
         if !matches!(self.model, Model::Auto | Model::Modal) {
-            return Err(refused(self.model, format!("auto or modal: {why}")));
+            return Err(refused(self.model, format!("auto or modal, because {why}")));
         }
         let impact = self.impact_of(self.modes.count(), &mut Kept::default())?;
         let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
@@ -189,7 +189,7 @@ fn pilot() -> Settings {
 /// Rejects a model that was requested and is not available, as [`Scene::answer`] does.
 fn forced_tier_applies(model: Model, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
     if model != Model::Modal {
-        forced_tier(model, pose, cost)?.map_err(|reason| refused(model, reason))?;
+        forced_tier(model, pose, cost)?.map_err(|reason| refused(model, format!("another model, because {reason}")))?;
     }
     Ok(())
 }

@@ -102,7 +102,7 @@ impl<'a> Pose<'a> {
         let settings = Settings::default();
         let tolerance = scene.tolerance.unwrap_or(if chosen { DEFAULT_TOLERANCE } else { settings.tolerance });
         if chosen && !TOLERANCES.contains(&tolerance) {
-            let allowed = "a number from 1e-10 to 0.5 where the program chooses the modes";
+            let allowed = "a number from 1e-10 to 0.5, because the program chooses the modes";
             return Err(InvalidInput::new("tolerance", number(tolerance), allowed));
         }
         striker.check().map_err(in_scene)?;

@@ -82,7 +82,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
 /// The wall, because it was requested.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     if !pose.approaches() {
-        return Ok(Err("another model where the striker does not approach".to_owned()));
+        return Ok(Err("the striker does not approach".to_owned()));
     }
     let bound = bound(pose, cost)?.ok();
     wall(pose, bound, cost).map(Ok)

@@ -95,7 +95,7 @@ pub fn plan_text(plan: &Plan) -> String {
     if let Some(duration) = plan.contact_duration_s {
         let _ = writeln!(text, "  {:<22}{} on an immovable surface", "contact", quantity(duration, "s"));
     }
-    let _ = writeln!(text, "\n  {:<16}{:>10}{:>24}{:>24}", "tier", "error", "mode-steps", "time");
+    let _ = writeln!(text, "\n  {:<16}{:>10}{:>24}{:>24}", "model", "error", "mode-steps", "time");
     for tier in &plan.tiers {
         let error = tier.expected_error.map_or_else(|| "-".to_owned(), small);
         let _ = writeln!(
@@ -122,7 +122,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     let _ = writeln!(
         text,
         "  {:<16}{:>14}{:>12}{:>12}{:>10}{:>12}",
-        "tier", "restitution", "known to", "sub-imp.", "modes", "difference"
+        "model", "restitution", "known to", "sub-imp.", "modes", "difference"
     );
     for tier in &comparison.tiers {
         let name = tier.model.as_str();

@@ -9,8 +9,8 @@ use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene, SceneError, Structure};
 
 const COLUMNS: [&str; 3] = ["mass_kg", "location_m", "restitution"];
-const NEEDED: &str = "a table of comma-separated values with a line of names that holds mass_kg, location_m and \
-                      restitution once each";
+const NEEDED: &str = "a table of comma-separated values whose line of names contains mass_kg, location_m and \
+                      restitution, each once";
 
 /// One impact of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +47,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
     let table = Table::parse(bytes, NEEDED)?;
     let mut places = [0; 3];
     for (place, name) in places.iter_mut().zip(COLUMNS) {
-        let missing = || InvalidInput::missing(format!("column {name}"), NEEDED);
-        *place = table.column(name, NEEDED)?.ok_or_else(missing)?;
+        *place = table.needed_column(name, NEEDED)?;
     }
     let row = |row: &Row| {
         let mut values = [0.0; 3];
@@ -86,7 +85,7 @@ impl Scene {
     /// ```
     pub fn observations(&self, table: &[Datum], modes: usize) -> Result<Observations, InvalidInput> {
         let Structure::Beam(beam) = &self.structure else {
-            let allowed = "beam: the table has locations along a beam";
+            let allowed = "beam, because the table has locations along a beam";
             return Err(InvalidInput::new(["structure", "kind"], self.structure.kind(), allowed));
         };
         let modes = beam.modes(modes)?;

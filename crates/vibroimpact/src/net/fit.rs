@@ -136,7 +136,7 @@ impl FitSummary {
         }
         let distinct = observations.distinct(needed);
         if distinct < needed {
-            let allowed = format!("at least {needed}, one for each parameter; repeated lines count once");
+            let allowed = format!("at least {needed}, one for each parameter; a repeated line counts once");
             return Err(InvalidInput::new(
                 "lines of data that differ in mass or location",
                 distinct.to_string(),

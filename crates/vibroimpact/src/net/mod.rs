@@ -73,7 +73,7 @@ impl Scene {
     /// ```
     pub fn emoc(&self, parameters: &Parameters, modes: Option<usize>) -> Result<NetRebound, InvalidInput> {
         if self.start.is_some() {
-            return Err(InvalidInput::new("start", "{...}", "left out: the law is for a structure at rest"));
+            return Err(InvalidInput::new("start", "{...}", "left out, because the law is for a structure at rest"));
         }
         let modes = match modes {
             Some(count) => self.mode_shapes(count)?,
@@ -111,7 +111,7 @@ fn require_vibration(modes: &[Mode]) -> Result<(), InvalidInput> {
     if modes.iter().any(|mode| mode.omega_rad_s > 0.0) {
         return Ok(());
     }
-    let allowed = "enough for at least one mode that vibrates; rigid-body modes do not count";
+    let allowed = "large enough for at least one mode that vibrates; rigid-body modes do not count";
     Err(InvalidInput::new("modes", modes.len().to_string(), allowed))
 }
 

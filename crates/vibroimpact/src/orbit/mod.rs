@@ -78,17 +78,20 @@ impl AssemblyScene {
         let fault = |why: String| InvalidInput::new("--over", crate::scene::json::quote(&over.field.into()), why);
         let path = FieldPath::parse(over.field).ok_or_else(|| fault(allowed.to_owned()))?;
         let present = path.get(&tree).and_then(Value::as_f64);
-        let from = over.from.or(present).ok_or_else(|| fault(format!("{allowed}; --from states a first value")))?;
+        let from = over
+            .from
+            .or(present)
+            .ok_or_else(|| fault(format!("{allowed}, or have its first value stated by --from")))?;
         let pose = |value: f64| -> Result<Assembly<Law>, InvalidInput> {
             let mut tree = tree.clone();
-            path.set(&mut tree, value.into()).map_err(&fault)?;
+            path.set(&mut tree, value.into()).map_err(|why| fault(format!("{allowed}, but {why}")))?;
             Ok(AssemblyScene::from_value(&tree)?.pose()?.assembly)
         };
         let first = pose(from)?;
         if from != over.to && pose(over.to).is_ok_and(|last| without_start(first.clone()) == without_start(last)) {
             return Err(fault(format!(
-                "{allowed}, on which the periodic motion depends; this one changes at most the start, the end or the accuracy of \
-                 a run"
+                "{allowed}, on which the periodic motion depends; this field has an influence at most on the start, the end or \
+                 the accuracy of a run"
             )));
         }
         let orbit = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };

@@ -64,7 +64,7 @@ impl Figure {
     /// Another ending, or a place that cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let format = Format::of(path).ok_or_else(|| {
-            let message = format!("{} is not allowed: {}", path.display(), Format::ENDINGS);
+            let message = format!("the file name {} is not allowed; it must be {}", path.display(), Format::ENDINGS);
             io::Error::new(io::ErrorKind::InvalidInput, message)
         })?;
         crate::report::write_whole(path, &self.bytes(format)?)

@@ -36,19 +36,22 @@ impl Figure {
     /// # Ok::<(), std::io::Error>(())
     /// ```
     pub fn png(&self, scale: f64) -> io::Result<Vec<u8>> {
-        let refused = |why: &str| io::Error::new(io::ErrorKind::InvalidInput, format!("scale = {scale}: {why}"));
+        let refused =
+            |why: &str| io::Error::new(io::ErrorKind::InvalidInput, format!("scale = {scale} is not allowed; {why}"));
         if !(scale > 0.0 && scale.is_finite()) {
-            return Err(refused("allowed is a finite number greater than 0"));
+            return Err(refused("it must be a finite number greater than 0"));
         }
         let options = Options { fontdb: FONTS.clone(), font_family: FAMILY.to_owned(), ..Options::default() };
         let tree = Tree::from_str(&self.svg()?, &options).map_err(io::Error::other)?;
         let size = tree.size();
         let [width, height] = [size.width(), size.height()].map(|side| (f64::from(side) * scale).round());
         if !(width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
-            return Err(refused(&format!("a picture of {width} by {height} pixels, allowed are 1 to {MOST_PIXELS:e}")));
+            return Err(refused(&format!(
+                "it must give 1 to {MOST_PIXELS:e} pixels, and this picture would have {width} by {height}"
+            )));
         }
         let mut pixels = Pixmap::new(width as u32, height as u32)
-            .ok_or_else(|| refused("a picture of that size is not possible"))?;
+            .ok_or_else(|| refused("a picture of this size is not possible"))?;
         let scale = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
         resvg::render(&tree, scale, &mut pixels.as_mut());
         pixels.encode_png().map_err(io::Error::other)

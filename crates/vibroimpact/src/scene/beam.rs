@@ -101,7 +101,7 @@ impl Beam {
             match segment.thickness() {
                 Some((field, thickness)) if length_m < 2.0 * thickness => {
                     let allowed = format!(
-                        "at most half the length of the whole beam, {} m, since beam theory does not hold for shorter \
+                        "at most half the length of the whole beam, {} m, because beam theory does not hold for shorter \
                         beams; flexural_rigidity_n_m2 and mass_per_length_kg_m are accepted for any length",
                         number(length_m)
                     );

@@ -11,7 +11,7 @@ pub enum BeamTheory {
     EulerBernoulli,
     /// With shear and rotary inertia.
     Timoshenko,
-    /// Timoshenko's where every segment gives what it needs, and no axial force and no foundation is there; otherwise
+    /// Timoshenko's if every segment has the data for it and there is neither axial force nor foundation; otherwise
     /// Euler-Bernoulli's.
     Auto,
 }

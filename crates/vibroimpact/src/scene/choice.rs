@@ -16,11 +16,11 @@ pub enum Model {
     Auto,
     /// The location does not move: the law's restitution at a wall.
     Rigid,
-    /// A beam without ends, [`vibroimpact_sim::infinite`]; of an infinite plate, the plate.
+    /// A beam without ends, [`vibroimpact_sim::infinite`]; for an infinite plate, the plate.
     InfiniteBeam,
     /// Modes and resolved contacts, [`vibroimpact_sim::modal`].
     Modal,
-    /// A law for the net restitution that integrates nothing in time.
+    /// A law for the net restitution, without integration in time.
     Emoc,
 }
 

@@ -15,7 +15,7 @@ use super::sets::one_of_sets;
 use super::told::did_you_mean_one_of;
 use super::{Striker, fields};
 
-/// The law of the contact; `"law"` in JSON tells which, beside its parameters. A `restitution` is that at an immovable
+/// The law of the contact, which `"law"` names, with its parameters beside it. A `restitution` is that at an immovable
 /// wall, at the striker's speed, from which the law's damping follows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "kebab-case")]

@@ -19,15 +19,15 @@ use super::striker::Striker;
 use super::structure::Structure;
 use super::{json, toml};
 
-/// One impact: what is struck, by what, how they touch, where.
+/// One impact: the structure, the striker, the law of their contact, and the location.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Scene {
     /// A text for the reader; may be left out.
     pub description: Option<String>,
-    /// What is struck.
+    /// The struck structure.
     pub structure: Structure,
-    /// What strikes it.
+    /// The striker.
     pub striker: Striker,
     /// The law of the contact.
     pub contact: Contact,
@@ -36,10 +36,10 @@ pub struct Scene {
     pub location_m: Option<Location>,
     /// Name of the point that is struck. Required for a modal structure with named points; other structures have none.
     pub location: Option<String>,
-    /// Which model answers, [`Scene::answer`]; the program's choice when left out.
+    /// The model, see [`Scene::answer`]; chosen by the program when left out.
     #[serde(default, skip_serializing_if = "Model::is_auto")]
     pub model: Model,
-    /// Modes retained, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
+    /// Modes retained, from the lowest: a number (0 is an immovable structure); chosen by the program when left out.
     #[serde(default, skip_serializing_if = "Modes::is_auto")]
     pub modes: Modes,
     /// Whether remainder modes represent the truncated modes, so that the restitution converges in the number of modes. When left
@@ -47,8 +47,8 @@ pub struct Scene {
     pub residual_compliance: Option<bool>,
     /// Motion of the structure before the impact; at rest and touched by the striker when left out.
     pub start: Option<Start>,
-    /// Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses the
-    /// modes; 1e-9, that of the solver alone, where the modes are given.
+    /// Requested accuracy of the restitution. When left out: 1e-3, which includes truncation, where the program chooses the
+    /// modes; 1e-9, of the solver alone, where the modes are given.
     pub tolerance: Option<f64>,
     /// Yield strength of the softer body (Pa), against which the pressure in the contact is judged; it changes no result.
     pub yield_strength_pa: Option<f64>,
@@ -148,8 +148,8 @@ impl Scene {
     pub fn from_value(value: &Value) -> Result<Scene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
         if let Some(bodies) = value.get("bodies") {
-            let allowed = "left out: this asks for a scene of one impact, with structure and striker; `vibroimpact \
-                           simulate` takes scenes of bodies";
+            let allowed = "left out, because a scene of one impact is needed here, with structure and striker; \
+                           `vibroimpact simulate` takes scenes of bodies";
             return Err(InvalidInput::new("bodies", json::quote(bodies), allowed));
         }
         let value = numbers_of_materials(value)?;

@@ -12,10 +12,9 @@ use super::fields;
 use super::json::number;
 
 /// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
-/// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
-/// speed of the fall at first touch; `location_m`, `modes`, `residual_compliance` and `start` are left out. In
-/// `contact`, a striker of another material is the floor; `{ "law": "hertz" }` with nothing beside it is the rod's own
-/// material on a rigid floor. Remainder modes always represent the truncated modes. The restitution is that of the
+/// chapter 8). The floor takes the part of the striker: of `striker` only `speed_m_s` is given, the speed of the fall at
+/// first touch; `location_m`, `modes`, `residual_compliance` and `start` are left out. In `contact`, a striker of another
+/// material is the floor; `{ "law": "hertz" }` without further fields is the rod's own material on a rigid floor. Remainder modes always represent the truncated modes. The restitution is that of the
 /// contact point's rigid-body motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -35,10 +34,10 @@ pub struct DroppedRod {
     /// Damping ratio of the elastic modes; 0 when left out.
     #[serde(default)]
     pub damping_ratio: f64,
-    /// Bending modes; 40 when left out.
+    /// Number of bending modes; 40 when left out.
     #[serde(default = "bending_modes")]
     pub bending_modes: usize,
-    /// Axial modes; 20 when left out.
+    /// Number of axial modes; 20 when left out.
     #[serde(default = "axial_modes")]
     pub axial_modes: usize,
 }

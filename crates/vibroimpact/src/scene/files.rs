@@ -81,8 +81,8 @@ pub(crate) fn check_version(value: &Value, newest: u64, what: &str) -> Result<()
     match value.get("version") {
         Some(version) if version.as_u64().is_some_and(|version| version > newest) => {
             let allowed = format!(
-                "this program understands versions of the {what} format up to {newest}; the file was written for a \
-                 newer vibroimpact, which can read it"
+                "at most {newest}, the newest version of the {what} format that this program understands; a newer vibroimpact, \
+                 for which the file was written, can read it"
             );
             Err(InvalidInput::new("version", json::quote(version), allowed))
         }

@@ -8,8 +8,8 @@ use super::error::require_positive;
 use super::json::number;
 use super::segment::Segment;
 
-/// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`]. What Timoshenko's theory
-/// needs may stand beside it: the answer then tells how the first contact would end by that theory.
+/// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`]. The data of Timoshenko's
+/// theory may be given too; the result then states how the first contact would end by that theory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InfiniteBeam {

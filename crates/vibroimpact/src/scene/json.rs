@@ -1,5 +1,5 @@
-//! From text to typed values, with every fault located: syntax errors, repeated keys, missing, unknown and
-//! mistyped fields all carry the path of the field they stand in.
+//! Converts text to typed values. Every error (of syntax, or a repeated key, a missing, unknown or mistyped field) has the path
+//! of its field.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -207,7 +207,7 @@ fn read_told<T: DeserializeOwned>(
         match fault.into_inner() {
             Fault::Missing(name) => {
                 let field = Path::from(name).within(render(&path));
-                let allowed = allowed_at(&field).unwrap_or("a value is required");
+                let allowed = allowed_at(&field).unwrap_or("given");
                 InvalidInput::missing(field, allowed)
             }
             Fault::Unknown { name, known } => {
@@ -237,7 +237,7 @@ pub(crate) fn unknown_field<'a>(field: Path, value: &Value, known: impl Iterator
     let mut names: Vec<&str> = known.collect();
     names.extend(names_beside(&names));
     let meant = did_you_mean(field.last().unwrap_or_default(), names.iter().copied());
-    let allowed = format!("unknown field; the fields here are {}{meant}", names.join(", "));
+    let allowed = format!("one of {}{meant}", names.join(", "));
     InvalidInput::unknown(field, quote(value), allowed)
 }
 

@@ -44,7 +44,7 @@ impl Location {
         match self {
             Location::Along(x_m) => Ok(x_m),
             Location::On(_) => {
-                let allowed = "one number, the distance from the left end";
+                let allowed = "a single number, the distance from the left end";
                 Err(InvalidInput::new("location_m", self.to_string(), allowed))
             }
         }

@@ -265,15 +265,16 @@ mod tests {
         let told = |scene: Value| numbers_of_materials(&scene).unwrap_err().to_string();
         assert_eq!(
             told(json!({ "structure": { "kind": "beam", "segments": [{ "material": "stele" }] } })),
-            "structure.segments[0].material = \"stele\" is not allowed: one of steel, aluminium, glass, rubber, wood; \
+            "structure.segments[0].material = \"stele\" is not allowed; it must be one of steel, aluminium, glass, rubber, wood; \
              did you mean steel?"
         );
         assert_eq!(
             told(json!({ "striker": { "material": "steel", "mass_kg": 1 } })),
-            "striker.material = \"steel\" must be left out in the presence of mass_kg"
+            "striker.material = \"steel\" is not allowed; it must be left out in the presence of mass_kg"
         );
         assert!(
-            told(json!({ "contact": { "material": 7 } })).starts_with("contact.material = 7 is not allowed: one of")
+            told(json!({ "contact": { "material": 7 } }))
+                .starts_with("contact.material = 7 is not allowed; it must be one of")
         );
     }
 }

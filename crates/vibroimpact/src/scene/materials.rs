@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Striker;
 use super::error::require_positive;
+use super::ranges::POSITIVE;
 use super::sets::one_of_sets;
 
-/// What striker and structure are made of where they touch.
+/// Materials of striker and structure at the contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Materials {
     /// Young's modulus of both bodies; of the structure alone where the striker's own is given (Pa).
@@ -61,7 +62,7 @@ impl Materials {
         let radius_m = striker.radius_m.ok_or_else(|| {
             InvalidInput::missing(
                 ["striker", "radius_m"],
-                "needed for a contact given by materials: a finite number greater than 0",
+                format!("{POSITIVE}, because a contact given by materials needs it"),
             )
         })?;
         require_positive(["striker", "radius_m"], radius_m)?;

@@ -38,10 +38,11 @@ pub struct Modal {
     /// Damping ratios, one for each mode; all 0 when left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub damping_ratios: Vec<f64>,
-    /// Modal masses that go with the shapes (kg), one for each mode. When left out, shapes are mass-normalised: 1 kg each.
+    /// Modal masses to which the shapes are normalised (kg), one for each mode. When left out, shapes are mass-normalised: 1 kg
+    /// each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub modal_mass_kg: Vec<f64>,
-    /// Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with `modal_mass_kg`.
+    /// Shapes at the point of impact: mass-normalised (kg^-1/2), or normalised to `modal_mass_kg`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shape_at_location: Vec<f64>,
     /// Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond the list
@@ -59,7 +60,7 @@ pub struct Modal {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Point {
-    /// Shapes at the point: mass-normalised (kg^-1/2), or as they go with `modal_mass_kg`.
+    /// Shapes at the point: mass-normalised (kg^-1/2), or normalised to `modal_mass_kg`.
     pub shape: Vec<f64>,
     /// Static compliance at the point (m/N) of the whole elastic structure, modes beyond the list included; needed for
     /// `"residual_compliance": true` only.
@@ -93,16 +94,17 @@ impl Modal {
     pub(super) fn from_value(value: &Value, beside: &[&str]) -> Result<Modal, InvalidInput> {
         let modal: Modal = read_beside(value, beside)?;
         if modal.omega_rad_s.is_empty() {
-            let allowed =
-                "a list of at least one frequency; an immovable surface is a striker with \"immovable\": true";
+            let allowed = "a list of at least one frequency; an immovable surface is described by a striker with \"immovable\": true";
             return Err(InvalidInput::new("omega_rad_s", "[]", allowed));
         }
         if modal.points.is_empty() && value.get("points").is_some() {
-            let allowed = "at least one point by its name, each with its shape; or give shape_at_location";
+            let allowed =
+                "an object with at least one named point and its shape, or left out in favour of shape_at_location";
             return Err(InvalidInput::new("points", "{}", allowed));
         }
         if modal.shape_at_location.is_empty() && modal.points.is_empty() {
-            let allowed = "a list of finite numbers, one a mode; or give points, each with its shape";
+            let allowed =
+                "a list of finite numbers, one for each mode, unless the structure has points with shapes of their own";
             return Err(match value.get("shape_at_location") {
                 Some(_) => InvalidInput::new("shape_at_location", "[]", allowed),
                 None => InvalidInput::missing("shape_at_location", allowed),
@@ -128,7 +130,7 @@ impl Modal {
                 shape_name: "shape_at_location",
             }),
             (Some(name), true) => {
-                let allowed = "left out: the modal structure has no points, only shape_at_location";
+                let allowed = "left out, because the modal structure has no points, only shape_at_location";
                 Err(InvalidInput::new("location", format!("{name:?}"), allowed))
             }
             (_, false) if !self.shape_at_location.is_empty() => {
@@ -141,7 +143,7 @@ impl Modal {
                 left_out("residual_compliance_m_n", number(self.residual_compliance_m_n.unwrap_or_default()))
             }
             (name, false) => {
-                let names = || format!("one of the structure's points, {}", shown(self.points.keys()));
+                let names = || format!("one of the structure's points {}", shown(self.points.keys()));
                 let name = name.ok_or_else(|| InvalidInput::missing("location", names()))?;
                 let missing = || {
                     let meant = did_you_mean(name, self.points.keys().map(String::as_str));
@@ -173,7 +175,7 @@ impl Modal {
             (&"modal_mass_kg".into(), self.modal_mass_kg.len(), false),
         ] {
             if length != listed && (needed || length > 0) {
-                let allowed = format!("as many values as omega_rad_s has, which is {listed}");
+                let allowed = format!("a list as long as omega_rad_s, which has {listed}");
                 return Err(InvalidInput::new(field.clone(), format!("{length} values"), allowed));
             }
         }
@@ -215,7 +217,7 @@ impl Modal {
     pub(super) fn static_compliance_m_n(&self, location: Option<&str>) -> Result<f64, InvalidInput> {
         let seen = self.seen_from(location)?;
         let field = |name: &str| seen.field(name).within("structure");
-        let allowed = || format!("needed for residual_compliance: {}", fields::NOT_NEGATIVE);
+        let allowed = || format!("{}, because residual_compliance needs it", fields::NOT_NEGATIVE);
         let (name, value, listed) = match (seen.static_compliance_m_n, seen.residual_compliance_m_n) {
             (Some(whole), None) => ("static_compliance_m_n", whole, 0.0),
             (None, Some(residual)) => {

@@ -20,13 +20,13 @@ use crate::input::{Row, Table, read_bytes};
 /// | `omega_rad_s` or `frequency_hz` | frequency of the mode, in one of two units; 0 for a rigid-body mode |
 /// | `damping_ratio` | may be left out: 0 |
 /// | `modal_mass_kg` | may be left out: shapes are mass-normalised |
-/// | any other name | shapes at the point of that name (kg^-1/2, or as they go with `modal_mass_kg`) |
+/// | any other name | shapes at the point of that name (kg^-1/2, or normalised to `modal_mass_kg`) |
 ///
-/// [`Scene::read`](crate::Scene::read) puts a [`Modal`] in its place, so that the scene then stands on its own.
+/// [`Scene::read`](crate::Scene::read) replaces it by a [`Modal`], so that the scene then needs no further file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModesFile {
-    /// Path of the table, relative to the scene file; the table stands in the same folder or below it.
+    /// Path of the table, relative to the scene file; the table is in the same folder or below it.
     pub file: String,
     /// Static compliances (m/N) of the whole elastic structure at points of the table, by their names; needed for
     /// `"residual_compliance": true` only.
@@ -34,8 +34,8 @@ pub struct ModesFile {
     pub static_compliances_m_n: BTreeMap<String, f64>,
 }
 
-const NEEDED: &str = "a table of comma-separated values whose line of names holds omega_rad_s or frequency_hz, if \
-                      need be damping_ratio and modal_mass_kg, and each point's name once";
+const NEEDED: &str = "a table of comma-separated values whose line of names contains omega_rad_s or frequency_hz, \
+                      optionally damping_ratio and modal_mass_kg, and the name of each point";
 
 impl ModesFile {
     /// Reads the table, for a scene in `folder`.
@@ -45,7 +45,12 @@ impl ModesFile {
         for (name, compliance) in &self.static_compliances_m_n {
             let Some(point) = modal.points.get_mut(name) else {
                 let field = ["structure", "static_compliances_m_n", name.as_str()];
-                return Err(InvalidInput::new(field, super::json::number(*compliance), "a point of the table").into());
+                return Err(InvalidInput::new(
+                    field,
+                    super::json::number(*compliance),
+                    "left out, because the table has no point of this name",
+                )
+                .into());
             };
             point.static_compliance_m_n = Some(*compliance);
         }
@@ -66,11 +71,13 @@ pub(crate) fn table_path(field: impl Into<invalid_input::Path>, file: &str) -> R
 
 fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
     let table = Table::parse(bytes, NEEDED)?;
-    let column = |name: &str| table.column(name, NEEDED);
+    let column = |name: &str| table.column(name);
     let (frequency, name, to_omega) = match (column("omega_rad_s")?, column("frequency_hz")?) {
         (Some(place), None) => (place, "omega_rad_s", 1.0),
         (None, Some(place)) => (place, "frequency_hz", TAU),
-        (None, None) => return Err(InvalidInput::missing("column omega_rad_s", NEEDED)),
+        (None, None) => {
+            return Err(InvalidInput::missing("column omega_rad_s", format!("in {NEEDED}")));
+        }
         (Some(_), Some(_)) => {
             return Err(InvalidInput::new(
                 "column frequency_hz",
@@ -81,7 +88,11 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
     };
     let (damping, mass) = (column("damping_ratio")?, column("modal_mass_kg")?);
     if table.rows.is_empty() {
-        return Err(InvalidInput::new("number of modes", "0", "at least one line below the line of names, one a mode"));
+        return Err(InvalidInput::new(
+            "number of modes",
+            "0",
+            "at least 1; the table has one line for each mode below the line of names",
+        ));
     }
     let list = |place: Option<usize>, name: &str, allowed: (&str, fn(f64) -> bool)| match place {
         None => Ok(Vec::new()),
@@ -103,13 +114,16 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
     for (place, name) in table.header.iter().enumerate().filter(|(place, _)| !taken.contains(&Some(*place))) {
         column(name)?;
         if name.is_empty() {
-            return Err(InvalidInput::missing(format!("the name of column {}", place + 1), NEEDED));
+            return Err(InvalidInput::missing(
+                format!("the name of column {}", place + 1),
+                "in the first line of the table",
+            ));
         }
         let shape = list(Some(place), name, ("a finite number", |_| true))?;
         modal.points.insert(name.to_owned(), Point { shape, ..Point::default() });
     }
     if modal.points.is_empty() {
-        return Err(InvalidInput::missing("a column with the shapes at a point", NEEDED));
+        return Err(InvalidInput::missing("a column with the shapes at a point", format!("in {NEEDED}")));
     }
     Ok(modal)
 }

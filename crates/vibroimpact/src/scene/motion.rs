@@ -47,7 +47,7 @@ impl Scene {
 /// The values of the first modes, and 0 for the others.
 fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
     if first.len() > count {
-        let allowed = format!("at most {count} values, the number of modes");
+        let allowed = format!("a list of at most {count} values, the number of modes");
         return Err(InvalidInput::new(["start", field], format!("{} values", first.len()), allowed));
     }
     let mut all = first.to_vec();

@@ -13,29 +13,29 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Rejects a location that is given; `why` states the reason.
-    pub(crate) fn require_none(&self, why: &str) -> Result<(), InvalidInput> {
-        self.require_no_distance(why)?;
-        self.require_no_name(why)
+    /// Rejects a location that is given; `allowed` states the reason.
+    pub(crate) fn require_none(&self, allowed: &str) -> Result<(), InvalidInput> {
+        self.require_no_distance(allowed)?;
+        self.require_no_name(allowed)
     }
 
     /// The location on a structure with coordinates.
     pub(crate) fn on_structure(&self) -> Result<Location, InvalidInput> {
-        self.require_no_name("left out: the location on this structure is location_m")?;
+        self.require_no_name("left out, because the location on this structure is stated by location_m")?;
         let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
         self.location_m.ok_or_else(missing)
     }
 
-    pub(crate) fn require_no_distance(&self, why: &str) -> Result<(), InvalidInput> {
+    pub(crate) fn require_no_distance(&self, allowed: &str) -> Result<(), InvalidInput> {
         match self.location_m {
-            Some(location_m) => Err(InvalidInput::new("location_m", location_m.to_string(), why)),
+            Some(location_m) => Err(InvalidInput::new("location_m", location_m.to_string(), allowed)),
             None => Ok(()),
         }
     }
 
-    pub(crate) fn require_no_name(&self, why: &str) -> Result<(), InvalidInput> {
+    pub(crate) fn require_no_name(&self, allowed: &str) -> Result<(), InvalidInput> {
         match self.location {
-            Some(location) => Err(InvalidInput::new("location", format!("{location:?}"), why)),
+            Some(location) => Err(InvalidInput::new("location", format!("{location:?}"), allowed)),
             None => Ok(()),
         }
     }

@@ -47,7 +47,7 @@ pub struct Plate {
     pub density_kg_m3: f64,
     /// How the edges at x = 0, x = length, y = 0 and y = width are held.
     pub edges: [Edge; 4],
-    /// By which theory the plate bends; Kirchhoff's when left out.
+    /// The theory of bending; Kirchhoff's when left out.
     #[serde(default)]
     pub theory: PlateTheory,
     /// Shear coefficient of Mindlin's theory; 5/(6 - Poisson's ratio) when left out.
@@ -71,14 +71,15 @@ pub enum Edge {
 
 invalid_input::names!(Edge, "edge", { Clamped: "clamped", Pinned: "pinned", Free: "free" });
 
-/// The theory by which a plate bends.
+/// Theory of bending of a plate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PlateTheory {
-    /// Thin: no shear, no rotary inertia.
+    /// Kirchhoff's theory of thin plates, without shear and rotary inertia.
     #[default]
     Kirchhoff,
-    /// With both, for a plate pinned along all edges whose number of modes is stated.
+    /// Mindlin's theory, with shear and rotary inertia, for a plate that is pinned along all edges and whose number of modes is
+    /// stated.
     Mindlin,
 }
 
@@ -103,7 +104,7 @@ impl Plate {
             }
         };
         if let (PlateTheory::Kirchhoff, Some(value)) = (self.theory, self.shear_coefficient) {
-            let allowed = "left out, or beside \"theory\": \"mindlin\"";
+            let allowed = "left out, unless \"theory\" is \"mindlin\"";
             return Err(InvalidInput::new("shear_coefficient", value.to_string(), allowed));
         }
         let Plate { length_m, width_m, thickness_m, youngs_modulus_pa, poissons_ratio, density_kg_m3, .. } = *self;

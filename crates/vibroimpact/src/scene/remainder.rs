@@ -21,8 +21,8 @@ pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), Inval
     if whole_m_n == 0.0 || kept.iter().any(|mode| mode.omega_rad_s > 0.0) {
         return Ok(());
     }
-    let allowed = "left out, or beside at least one mode with a frequency above 0, which is kept: how the modes that are \
-                   not listed answer is told from those that are";
+    let allowed = "left out, unless it is beside at least one mode with a frequency above 0 that is retained: the response of the modes that are \
+                   not listed is extrapolated from those that are";
     Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed))
 }
 
@@ -91,7 +91,7 @@ impl Structure {
         let answered = compliance(first);
         // if both are computed, a negative difference is due to rounding
         if !self.is_computed() && whole_m_n < answered * (1.0 - ROUNDING) {
-            let allowed = format!("not less than that of the modes retained, {answered:e}");
+            let allowed = format!("not less than the static compliance of the retained modes, {answered:e}");
             return Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed));
         }
         if !self.is_computed() && whole_m_n - answered <= COMPLETE * answered {

@@ -165,11 +165,12 @@ impl Segment {
             if let Some(value) = value {
                 let allowed = match section {
                     Section::Direct => {
-                        "left out in the presence of flexural_rigidity_n_m2: shear is given by shear_rigidity_n and \
+                        "left out in the presence of flexural_rigidity_n_m2, because shear is then given by shear_rigidity_n and \
                          rotary_inertia_kg_m"
                     }
                     _ => {
-                        "left out in the presence of a section: shear is given by poissons_ratio and, optionally, shear_coefficient"
+                        "left out in the presence of a section, because shear is then given by poissons_ratio and, optionally, \
+                         shear_coefficient"
                     }
                 };
                 return Err(InvalidInput::new(field, number(value), allowed));
@@ -216,7 +217,7 @@ impl Segment {
     pub(super) fn lacks_shear(&self) -> InvalidInput {
         let field = if self.flexural_rigidity_n_m2.is_some() { "shear_rigidity_n" } else { "poissons_ratio" };
         let range = fields::allowed(field).unwrap_or_default();
-        InvalidInput::missing(field, format!("needed by the theory timoshenko: {range}"))
+        InvalidInput::missing(field, format!("{range}, because the theory timoshenko needs it"))
     }
 
     /// The same segment with its shear rigidity multiplied by this factor.

@@ -15,10 +15,17 @@ pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Re
     let set = sets.get(nearest).copied().unwrap_or(&[]);
     let ways = || sets.iter().map(|set| set.join(" and ")).collect::<Vec<_>>().join(", or ");
     if let Some(field) = set.iter().find(|field| here.iter().all(|(name, _)| name != *field)) {
-        return Err(InvalidInput::missing(*field, format!("give {}", ways())));
+        return Err(InvalidInput::missing(
+            *field,
+            format!("given, unless another of these sets of fields is complete: {}", ways()),
+        ));
     }
     if let Some(&(field, value)) = here.iter().find(|(name, _)| !set.contains(name)) {
-        let allowed = format!("left out in the presence of {}; give {}", set.join(" and "), ways());
+        let allowed = format!(
+            "left out in the presence of {}; the sets of fields that may be given are {}",
+            set.join(" and "),
+            ways()
+        );
         return Err(InvalidInput::new(field, number(value), allowed));
     }
     Ok(nearest)

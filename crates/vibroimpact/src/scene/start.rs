@@ -10,12 +10,12 @@ use super::json::{number, objects};
 use super::location::Location;
 use super::place::Place;
 
-/// How the structure moves at the start, and how far away the striker then is. Displacements and velocities
-/// are positive towards the striker. What is given adds up.
+/// Motion of the structure at the start, and distance of the striker. Displacements and velocities are positive towards
+/// the striker. Motions that are given in different fields are added.
 ///
 /// The restitution of such an impact is, as always, the relative speed of separation over that of approach, both of
-/// the rigid-body motions. Vibration counts as no approach; of a structure without rigid-body modes only the striker's
-/// speeds count, so that a structure that swings towards the striker can give it a restitution above 1. Without an
+/// the rigid-body motions. Vibration does not count as approach; for a structure without rigid-body modes only the
+/// striker's speeds count, so that a structure that swings towards the striker can give it a restitution above 1. Without an
 /// approach of the rigid-body motions there is no restitution.
 ///
 /// ```
@@ -38,12 +38,12 @@ pub struct Start {
     /// Their rates (m kg^1/2 / s); those of the rest are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rate_m_kg0_5_s: Vec<f64>,
-    /// Modes given by how they move at a location.
+    /// Modes whose motion is given at a location.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub moving_modes: Vec<MovingMode>,
 }
 
-/// The motion of one mode, told at a location where it can be seen.
+/// The motion of one mode, given at a location where the mode moves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MovingMode {
@@ -88,7 +88,7 @@ impl MovingMode {
         if shape.abs() > NODE * most {
             Ok((k, shape))
         } else {
-            Err(fault("a mode that moves at the location; this one has a node there".to_owned()))
+            Err(fault("the number of a mode that moves at the location; this mode has a node there".to_owned()))
         }
     }
 }

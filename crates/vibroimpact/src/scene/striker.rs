@@ -19,8 +19,8 @@ pub struct Striker {
     pub density_kg_m3: Option<f64>,
     /// Radius of curvature at the point of contact (m); needed where the contact's stiffness comes from materials.
     pub radius_m: Option<f64>,
-    /// Whether the striker is a stop that never moves, of infinite mass; `false` when left out. Its speed is then 0:
-    /// the structure comes to it, as `start` tells.
+    /// Whether the striker is a stop that never moves, of infinite mass; `false` when left out. Its speed is then 0, and
+    /// `start` states the motion of the structure towards it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub immovable: bool,
     /// Speed towards the structure (m/s).
@@ -64,24 +64,27 @@ impl Striker {
                 Err(InvalidInput::new("mass_kg", number(mass), allowed))
             }
             (Some(_), Some(density), None) => {
-                let allowed = "left out in the presence of mass_kg, or given with radius_m in place of mass_kg";
+                let allowed = "left out in the presence of mass_kg, or given with radius_m instead of mass_kg";
                 Err(InvalidInput::new("density_kg_m3", number(density), allowed))
             }
             (Some(mass), None, _) | (None, _, Some(mass)) => Ok(mass),
             (None, density, None) => {
                 let field = if density.is_some() { "radius_m" } else { "mass_kg" };
-                Err(InvalidInput::missing(field, "give mass_kg, or density_kg_m3 and radius_m of a solid sphere"))
+                Err(InvalidInput::missing(
+                    field,
+                    "given, unless mass_kg or both density_kg_m3 and radius_m of a solid sphere are",
+                ))
             }
         }
     }
 
     fn stop_mass_kg(&self) -> Result<f64, InvalidInput> {
-        let left_out = "left out in the presence of immovable: a stop has no mass";
+        let left_out = "left out in the presence of immovable, because a stop has no mass";
         match (self.mass_kg, self.density_kg_m3) {
             (Some(mass), _) => Err(InvalidInput::new("mass_kg", number(mass), left_out)),
             (_, Some(density)) => Err(InvalidInput::new("density_kg_m3", number(density), left_out)),
             _ if self.speed_m_s != 0.0 => {
-                let allowed = "0 for an immovable striker; start states the motion of the structure";
+                let allowed = "0 for an immovable striker; the field start states the motion of the structure";
                 Err(InvalidInput::new("speed_m_s", number(self.speed_m_s), allowed))
             }
             _ => Ok(f64::INFINITY),

@@ -18,7 +18,7 @@ use super::place::{Place, require_count};
 use super::plate::{Edge, Plate, PlateTheory};
 use super::string::TautString;
 
-/// What is struck; `"kind"` tells which.
+/// The struck structure, of the kind that `"kind"` names.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -32,7 +32,7 @@ pub enum Structure {
     Plate(Plate),
     /// `"modal"`: any linear structure, given by its modes (measured, or from finite elements).
     Modal(Modal),
-    /// `"modes-file"`: the same from a table of comma-separated values that stands beside the scene.
+    /// `"modes-file"`: the same from a table of comma-separated values in the folder of the scene.
     ModesFile(ModesFile),
     /// `"infinite-beam"`: a beam without ends, [`vibroimpact_sim::infinite`].
     InfiniteBeam(InfiniteBeam),
@@ -105,8 +105,10 @@ impl Structure {
     /// The reason why this kind cannot be described by modes, or not yet.
     fn no_modes(&self) -> InvalidInput {
         let allowed = match self {
-            Structure::ModesFile(_) => "replaced by its table: Scene::read does it, or Scene::read_modes_file",
-            _ => "beam, string, plate, modal or dropped-rod, the structures with modes",
+            Structure::ModesFile(_) => {
+                "replaced by the kind modal with the modes of its table, as Scene::read and Scene::read_modes_file do"
+            }
+            _ => "one of beam, string, plate, modal, dropped-rod, the structures with modes",
         };
         InvalidInput::new(["structure", "kind"], format!("\"{}\"", self.kind()), allowed)
     }
@@ -130,8 +132,8 @@ impl Structure {
             }
             Structure::Beam(_) | Structure::TautString(_) | Structure::Plate(_) => {
                 let location_m = place.on_structure()?;
-                let stated = "a whole number from 0 to 10000, where the program does not choose it: for a structure that \
-                              moves before the impact, for an immovable striker, and for Mindlin's plate";
+                let stated = "a whole number from 0 to 10000; the program does not choose it for a structure that moves \
+                              before the impact, for an immovable striker, and for Mindlin's plate";
                 let count = count.ok_or_else(|| InvalidInput::missing("modes", stated))?;
                 return match self {
                     Structure::Beam(beam) => known.first(beam, count)?.seen_from(location_m.along()?),
@@ -144,17 +146,17 @@ impl Structure {
                 };
             }
             Structure::Modal(listed) => {
-                place.require_no_distance("left out: the points of a modal structure have names")?;
+                place.require_no_distance("left out, because the points of a modal structure have names")?;
                 listed.modes(place.location)?
             }
             Structure::DroppedRod(rod) => {
-                place.require_none("left out: a dropped rod is struck at its lower end")?;
+                place.require_none("left out, because a dropped rod is struck at its lower end")?;
                 rod.modes().map_err(|fault| fault.within("structure"))?
             }
         };
         match count {
             Some(count) if count > modes.len() => {
-                let allowed = format!("at most {}, the number of modes listed", modes.len());
+                let allowed = format!("at most {}, the number of listed modes", modes.len());
                 Err(InvalidInput::new("modes", count.to_string(), allowed))
             }
             _ => Ok(modes.into_iter().take(count.unwrap_or(usize::MAX)).collect()),

@@ -46,7 +46,7 @@ pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a s
     if word.chars().count() > LONGEST_NAME {
         return String::new();
     }
-    let word = word.to_lowercase();
+    let (given, word) = (word, word.to_lowercase());
     let likeness = |name: &str| {
         let name = name.to_lowercase();
         let is_piece = word.chars().count() >= SHORTEST_PIECE && name.contains(&word);
@@ -60,13 +60,18 @@ pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a s
             nearest = Some((alike, name));
         }
     }
+    // a word that is in the list is wrong for another reason
+    let nearest = nearest.filter(|(_, name)| *name != given);
     nearest.map_or_else(String::new, |(_, name)| format!("; did you mean {name}?"))
 }
 
 /// As [`did_you_mean`], with the names that a message lists after `one of`.
 pub(crate) fn did_you_mean_one_of(word: &str, allowed: &str) -> String {
     let listed = allowed.split_once("one of ").map_or("", |(_, listed)| listed);
-    did_you_mean(word, listed.split(", ").map(|name| name.trim_matches(['"', '`'])))
+    did_you_mean(
+        word,
+        listed.split(", ").map(|name| name.split(' ').next().unwrap_or_default().trim_matches(['"', '`'])),
+    )
 }
 
 #[cfg(test)]
@@ -85,7 +90,7 @@ mod tests {
         ] {
             assert_eq!(did_you_mean_one_of(word, kinds), format!("; did you mean {meant}?"), "{word}");
         }
-        for word in ["", "xyzzy", "steel", &"beam".repeat(100)] {
+        for word in ["", "xyzzy", "steel", "modal", &"beam".repeat(100)] {
             assert_eq!(did_you_mean_one_of(word, kinds), "", "{word}");
         }
         let fields = ["mass_kg", "speed_m_s", "length_m", "density_kg_m3"];

@@ -54,6 +54,10 @@ fn tree(value: toml::Value, path: &Path) -> Result<Value, InvalidInput> {
 pub(crate) fn write(tree: &Value) -> Result<String, InvalidInput> {
     let written = toml::Table::try_from(tree).and_then(|table| toml::to_string(&table));
     written.map_err(|fault| {
-        InvalidInput::new("the scene", fault.to_string(), "whole numbers below 2^63, the largest of TOML")
+        InvalidInput::new(
+            "the scene",
+            fault.to_string(),
+            "without whole numbers of 2^63 and above, which TOML does not have",
+        )
     })
 }

@@ -125,7 +125,7 @@ fn differentiate(base: &Posed, around: &[&Neighbours<Posed>]) -> Result<Differen
     let settings = Settings { max_steps: MOST_PANELS, statistics_from_s: 0.0, ..base.settings };
     let found = solver.differentiate(&settings, &parameters).map_err(in_scene)?;
     if found.run.outcome == Outcome::Stopped(vibroimpact_sim::assembly::Reason::Steps) {
-        let allowed = format!("a time that a run of {MOST_PANELS} panels reaches: it is kept whole. Shorten end_s");
+        let allowed = format!("a time that a run reaches within {MOST_PANELS} panels, because the whole run is stored");
         let value = format!("{} of which {:.6e} s were reached", base.settings.end_s, found.run.end_s);
         return Err(InvalidInput::new("end_s", value, allowed));
     }

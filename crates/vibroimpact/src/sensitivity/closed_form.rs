@@ -14,7 +14,7 @@ use crate::scene::{InvalidInput, Scene};
 pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivity, InvalidInput> {
     let answer = scene.answer()?;
     let tree = scene.tree();
-    let none = || InvalidInput::new("scene", "an impact without a restitution", "one that ends with a rebound");
+    let none = || InvalidInput::new("scene", "an impact without a restitution", "an impact that ends with a rebound");
     let restitution = |scene: &Scene| scene.answer()?.restitution.ok_or_else(none);
     let value = answer.restitution.ok_or_else(none)?;
     let pose = |tree: &Value| restitution(&Scene::from_value(tree)?);

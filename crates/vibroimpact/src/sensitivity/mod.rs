@@ -66,14 +66,14 @@ impl Scene {
     /// ```
     pub fn sensitivity(&self, fields: &[String]) -> Result<Sensitivity, InvalidInput> {
         if self.is_infinite() {
-            let allowed = "a structure with modes: derivatives go along the motion of modes";
+            let allowed = "a structure with modes, because the derivatives are computed along the motion of the modes";
             return Err(InvalidInput::new("structure", "an infinite one", allowed));
         }
         match self.model {
             Model::Auto | Model::Modal => {}
             Model::Rigid | Model::Emoc => return closed_form::sensitivity(self, fields),
             Model::InfiniteBeam => {
-                let allowed = "\"auto\", \"modal\", \"rigid\" or \"emoc\"";
+                let allowed = "one of auto, modal, rigid, emoc";
                 return Err(InvalidInput::new("model", quote(&self.model.as_str().into()), allowed));
             }
         }

@@ -44,11 +44,11 @@ impl<T> Neighbours<T> {
         let path = FieldPath::parse(field).ok_or_else(|| {
             InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
         })?;
-        let known = || format!("the path of a number that the scene states: {}", all_numbers(tree).0.join(", "));
+        let known = || format!("the path of a number that the scene states, one of {}", all_numbers(tree).0.join(", "));
         let stated = path.get(tree).ok_or_else(|| InvalidInput::new("--by", quote(&field.into()), known()))?;
         let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
         let found = Neighbours::beside(tree, (field, &path, value), by);
-        found.map_err(|why| named(&number(value), format!("a field that can vary continuously: {why}")))
+        found.map_err(|why| named(&number(value), format!("a field that can vary continuously ({why})")))
     }
 
     /// The same for a number of the scene, or the reason why it has no neighbours.
@@ -135,7 +135,7 @@ fn told(faults: &[InvalidInput], path: &FieldPath) -> String {
     let own = |fault: &&InvalidInput| fault.field == *path.path();
     match faults.iter().find(|fault| !own(fault)).or(faults.first()) {
         Some(fault) if !own(&fault) => fault.to_string(),
-        Some(fault) => format!("must be {}", fault.allowed),
+        Some(fault) => format!("it must be {}", fault.allowed),
         None => String::new(),
     }
 }
@@ -159,7 +159,9 @@ fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
 fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidInput> {
     let mut tree = tree.clone();
     // the field exists, since it was read from the same tree
-    path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.path().clone(), number(value), why))?;
+    path.set(&mut tree, value.into()).map_err(|why| {
+        InvalidInput::new(path.path().clone(), number(value), format!("a field of the scene, but {why}"))
+    })?;
     Ok(tree)
 }
 

@@ -14,12 +14,12 @@ pub(super) struct Refusal {
 impl Refusal {
     /// For a run with this outcome; `name` returns the name of a contact.
     pub fn new(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> String) -> Refusal {
-        const CONTACTS: &str = "contacts that begin with a speed, each at a time of its own";
+        const CONTACTS: &str = "one in which every contact begins with a speed and at a time of its own";
         let seconds = |time_s: f64| significant(time_s, 6);
         let (happens, allowed) = match why {
             NoDerivative::Outcome => (
                 format!("its outcome is {outcome:?}"),
-                "a run that reaches its end, or one impact that ends with a rebound",
+                "one that reaches its end, or a single impact that ends with a rebound",
             ),
             NoDerivative::Graze { contact, time_s } => {
                 (format!("{} touches without speed at {} s", name(contact), seconds(time_s)), CONTACTS)
@@ -33,9 +33,9 @@ impl Refusal {
             }
             NoDerivative::Break { time_s } => (
                 format!("an event coincides with a break of a load at {} s", seconds(time_s)),
-                "breaks of loads apart from events of contacts",
+                "one in which no event of a contact coincides with a break of a load",
             ),
-            _ => ("the derivatives are not finite".to_owned(), "a run with finite derivatives"),
+            _ => ("the derivatives are not finite".to_owned(), "one with finite derivatives"),
         };
         Refusal { happens, allowed }
     }
@@ -43,7 +43,8 @@ impl Refusal {
     /// The error of a field that the user named, or of the scene.
     pub fn error(&self, field: Option<&str>) -> InvalidInput {
         let Refusal { happens, allowed } = self;
-        let (place, value) = field.map_or(("scene", "this run"), |field| ("--by", field));
-        InvalidInput::new(place, value, format!("{allowed}, so that there is a derivative; here {happens}"))
+        let (place, value, whose) =
+            field.map_or(("scene", "this run", ""), |field| ("--by", field, "a field of a run, "));
+        InvalidInput::new(place, value, format!("{whose}{allowed}, so that there is a derivative; here {happens}"))
     }
 }

@@ -120,7 +120,7 @@ impl Table {
     pub(super) fn rows(&self, output: &str) -> Result<Rows<'_>, InvalidInput> {
         let by_field = self.derivatives.get(output).ok_or_else(|| {
             let known = self.derivatives.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            InvalidInput::new("--of", output, format!("an output of this scene: {known}"))
+            InvalidInput::new("--of", output, format!("an output of this scene, one of {known}"))
         })?;
         let mut rows: Vec<Row> = Vec::new();
         for field in &self.fields {

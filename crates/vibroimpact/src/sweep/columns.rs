@@ -53,7 +53,9 @@ pub fn run_in_memory(
     tell: &mut dyn FnMut(Status),
 ) -> Result<Vec<(String, Column)>, SweepError> {
     if sweep.points() > MOST_IN_MEMORY {
-        let allowed = format!("at most {MOST_IN_MEMORY} in memory; vibroimpact sweep writes larger sweeps to a folder");
+        let allowed = format!(
+            "at most {MOST_IN_MEMORY} for a sweep in memory; vibroimpact sweep writes larger sweeps to a folder"
+        );
         return Err(InvalidInput::new("number of points", sweep.points().to_string(), allowed).into());
     }
     let column = |(name, kind)| match kind {

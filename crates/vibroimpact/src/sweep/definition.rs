@@ -86,7 +86,7 @@ impl Sweep {
         let points = sizes.clone().try_fold(1u64, u64::checked_mul).filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| {
             let product = sizes.map(|size| size.to_string()).collect::<Vec<_>>().join(" x ");
-            InvalidInput::new("number of points", product, "at most 1e12 in all")
+            InvalidInput::new("number of points", product, "at most 1e12")
         })?;
         let results = Results::Impact;
         let mut sweep = Sweep { description, axes, random, uncertain, scene, canonical, points, results };
@@ -135,7 +135,7 @@ impl Sweep {
     fn results_of(&self, scene: &AnyScene, reliability: bool) -> Result<Results, InvalidInput> {
         match (scene, &self.uncertain) {
             (AnyScene::Impact(_), _) if reliability => {
-                let allowed = "false, or left out: only scenes of bodies have reliable_until_s";
+                let allowed = "false or left out, because only scenes of bodies have reliable_until_s";
                 Err(InvalidInput::new("reliability", "true", allowed))
             }
             (AnyScene::Impact(_), Some(_)) => Ok(Results::Draw),
@@ -168,7 +168,8 @@ impl Sweep {
     pub(super) fn check_undivided(&self) -> Result<(), InvalidInput> {
         match self.canonical.pointer("/sampling/sampling_error") {
             Some(error) if self.is_adaptive() => {
-                let allowed = "left out where a sweep is computed in parts or over MPI, whose number of draws is fixed";
+                let allowed =
+                    "left out, because a sweep that is computed in parts or over MPI has a fixed number of draws";
                 Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed))
             }
             _ => Ok(()),
@@ -211,7 +212,9 @@ impl Sweep {
         let mut tree = self.scene.clone();
         for (field, value) in self.fields().zip(values) {
             let set = field.set(&mut tree, value.clone());
-            set.map_err(|reason| InvalidInput::new(field.path().clone(), quote(value), reason))?;
+            set.map_err(|reason| {
+                InvalidInput::new(field.path().clone(), quote(value), format!("a field of the scene, but {reason}"))
+            })?;
         }
         AnyScene::from_value(&tree)
     }
@@ -274,12 +277,12 @@ impl Sweep {
         for (i, field) in fields.iter().enumerate() {
             let beside = self.axis_before(i);
             if let Some(axis) = beside.filter(|axis| !self.axes[*axis].is_numeric()) {
-                let allowed = format!("numbers, about which {} is uncertain", self.entry(i));
+                let allowed = format!("a list of numbers, because {} is uncertain about them", self.entry(i));
                 return Err(InvalidInput::new(Path::from("values").within(self.entry(axis)), "[...]", allowed));
             }
             let mut others = fields[..i].iter().enumerate().filter(|(before, _)| beside != Some(*before));
             if let Some((before, _)) = others.find(|(_, before)| field.holds(before.path())) {
-                let allowed = format!("a field that does not overwrite that of {}", self.entry(before));
+                let allowed = format!("a field that does not overwrite the field of {}", self.entry(before));
                 return Err(InvalidInput::new(self.entry_field(i), format!("\"{field}\""), allowed));
             }
         }
@@ -293,7 +296,7 @@ impl Sweep {
         let mut tree = self.scene.clone();
         for (i, (field, value)) in self.fields().zip(&first).enumerate() {
             field.set(&mut tree, value.clone()).map_err(|reason| {
-                let allowed = format!("the path of a field of the scene; {reason}");
+                let allowed = format!("the path of a field of the scene, but {reason}");
                 InvalidInput::new(self.entry_field(i), format!("\"{field}\""), allowed)
             })?;
         }
@@ -311,7 +314,11 @@ impl Sweep {
                         AxisValues::Range(..) => ("vary", i, "count").into(),
                         AxisValues::List(_) => ("vary", i, ("values", number as usize)).into(),
                     };
-                    InvalidInput::new(name, quote(&values[i]), format!("a value that the scene can hold; {fault}"))
+                    InvalidInput::new(
+                        name,
+                        quote(&values[i]),
+                        format!("a value that the scene can have; with it, {fault}"),
+                    )
                 })?;
             }
         }
@@ -328,7 +335,7 @@ impl Sweep {
         match self.varies(&fault) {
             None => fault.within("scene"),
             Some(i) if fault.is_unknown => {
-                InvalidInput::new(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
+                InvalidInput::unknown(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
             }
             Some(i) if self.uncertain.is_some() && i >= self.axes.len() => fault.under(self.entry(i)),
             Some(i) => {

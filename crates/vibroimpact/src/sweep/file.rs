@@ -24,11 +24,11 @@ const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or 
 
 /// A field and its allowed values.
 const FIELDS: &[(&str, &str)] = &[
-    ("", "a sweep is an object with scene or scene_file, and vary, random or uncertain"),
-    ("$schema", "a text: the address of the schema of sweeps"),
-    ("version", "a whole number, the version of the format: 1"),
+    ("", "an object with scene or scene_file, and vary, random or uncertain"),
+    ("$schema", "a text, the address of the schema of sweeps"),
+    ("version", "the whole number 1, the version of the format"),
     ("description", "a text"),
-    ("scene", "a scene as an object, or scene_file in its place"),
+    ("scene", "a scene as an object, unless scene_file takes its place"),
     ("scene_file", "the name of a scene file, relative to the folder of the sweep file"),
     ("vary", "a list of axes, each an object with field and either values or from, to and count"),
     ("vary[]", "an object with field and either values or from, to and count"),
@@ -38,7 +38,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("count", "a whole number from 2 to 1e12"),
     ("scale", "linear or log"),
     ("whole_numbers", "true or false"),
-    ("values", "a list of at least one value, beside which from, to, count, scale and whole_numbers are left out"),
+    ("values", "a list of at least one value, without from, to, count, scale and whole_numbers beside it"),
     ("random", "an object with seed, draws and fields"),
     ("seed", "a whole number from 0 to 18446744073709551615"),
     ("draws", "a whole number from 1 to 1e12"),
@@ -93,10 +93,10 @@ pub(super) struct SweepFile {
     #[serde(default, deserialize_with = "json::objects")]
     #[schemars(length(min = 1))]
     vary: Vec<AxisEntry>,
-    /// What is drawn at random at each point of the grid.
+    /// Random draws at each point of the grid.
     #[schemars(with = "Option<RandomEntry>")]
     random: Option<Value>,
-    /// Fields that are known as distributions, at each point of the grid; outputs are told as distributions then.
+    /// Fields that are given as distributions, at each point of the grid; the outputs are then distributions too.
     #[schemars(with = "Option<UncertainEntry>")]
     uncertain: Option<Value>,
     /// How uncertain fields are drawn.
@@ -120,7 +120,7 @@ struct AxisEntry {
     from: Option<f64>,
     /// The last value.
     to: Option<f64>,
-    /// How many values, both ends included.
+    /// Number of values, both ends included.
     #[schemars(range(min = 2, max = 1_000_000_000_000u64))]
     count: Option<u64>,
     /// Equal differences (linear, when left out) or equal ratios (log).
@@ -132,15 +132,15 @@ struct AxisEntry {
     values: Option<Vec<Value>>,
 }
 
-/// Fields that are drawn at random; the same draws meet every point of the grid.
+/// Fields that are drawn at random; the draws are the same at every point of the grid.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Random")]
 struct RandomEntry {
-    /// What the draws depend on, beside their number.
+    /// Seed of the draws, which depend only on it and on their number.
     #[schemars(range(min = 0))]
     seed: u64,
-    /// How many draws.
+    /// Number of draws.
     #[schemars(range(min = 1, max = 1_000_000_000_000u64))]
     draws: u64,
     /// The fields, each with the interval it is drawn from.
@@ -230,7 +230,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         canonical.as_object_mut().and_then(|map| map.remove(key));
     }
     if let Some(name) = file.scene_file {
-        let allowed = "a name in a sweep file; a sweep without a file has its scene in it";
+        let allowed = "left out of a sweep without a file, which contains its scene";
         return Err(InvalidInput::new("scene_file", quote(&name.into()), allowed));
     }
     let scene = file.scene.ok_or_else(|| missing("scene"))?;
@@ -244,14 +244,17 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     let (uncertain, told) = match &file.uncertain {
         Some(uncertain) => Some(uncertain::read(uncertain, sampling, typed)?),
         None if sampling.is_some() => {
-            return Err(InvalidInput::missing("uncertain", "the fields that are to be drawn"));
+            return Err(InvalidInput::missing("uncertain", "an object with the fields that are to be drawn"));
         }
         None => None,
     }
     .unzip();
     let told: Told = told.unwrap_or_default();
     if axes.is_empty() && random.is_none() && uncertain.is_none() {
-        return Err(InvalidInput::missing("vary", "give vary, random or uncertain: something must change"));
+        return Err(InvalidInput::missing(
+            "vary",
+            "given, unless random or uncertain is, because some field has to change",
+        ));
     }
     if uncertain.is_some() && random.is_some() {
         let allowed = "left out in the presence of uncertain, which makes all draws";
@@ -260,7 +263,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     if let Some(error) =
         canonical.pointer("/sampling/sampling_error").filter(|_| told.is_adaptive() && !axes.is_empty())
     {
-        let allowed = "left out in the presence of vary: every point of a grid has the same draws";
+        let allowed = "left out in the presence of vary, because every point of a grid has the same draws";
         return Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed));
     }
     let (description, reliability) = (file.description, file.reliability);

@@ -44,7 +44,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
         }
     }
     let Some((first, Finished { record, .. })) = found.values().next() else {
-        return refused("give the folders of all parts".to_owned());
+        return refused("the folders of all parts must be given".to_owned());
     };
     let of = record.part.of;
     let missing: Vec<String> =

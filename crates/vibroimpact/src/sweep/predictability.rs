@@ -62,7 +62,7 @@ impl Sweep {
         let mut scene = tree.clone();
         read_tables_into(&mut scene, folder)?;
         if !(1..=2).contains(&over.len()) {
-            let allowed = "one or two fields, each with its values";
+            let allowed = "stated for one or two fields, each with its values";
             return Err(InvalidInput::new("--over", format!("{} fields", over.len()), allowed).into());
         }
         let mut uncertain = Map::new();
@@ -73,7 +73,7 @@ impl Sweep {
                 BlurWidth::Relative(share) => json!({ "lognormal": [about.unwrap_or(1.0), share] }),
             };
             if uncertain.insert(field.clone(), distribution).is_some() {
-                return Err(InvalidInput::new("--blur", quote(&json!(field)), "every field once").into());
+                return Err(InvalidInput::new("--blur", quote(&json!(field)), "stated only once for each field").into());
             }
         }
         let axis = |Over { field, from, to, count, scale }: &Over| {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// Whether a theory bears an impact.
+/// Whether a theory applies to an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
@@ -16,25 +16,25 @@ pub enum Verdict {
 
 invalid_input::names!(Verdict, "verdict", { Within: "within", Doubtful: "doubtful", Outside: "outside" });
 
-/// One figure that tells whether a theory holds.
+/// One figure that shows whether a theory holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// What is judged: a name of the table in [`trust`](super).
+    /// Name of the check, from the table in [`trust`](super).
     pub check: &'static str,
     /// Within the theory's range, doubtful, or outside.
     pub verdict: Verdict,
     /// The figure, without a unit.
     pub value: f64,
-    /// Up to here, or from here on if `outside` is smaller, the theory holds.
+    /// Limit up to which the theory holds, or from which on if `outside` is smaller.
     pub within: f64,
-    /// Beyond this it does not.
+    /// Limit beyond which it does not hold.
     pub outside: f64,
     /// What the figure says, in a sentence.
     pub says: String,
 }
 
 impl Check {
-    /// `limits` are those of the theory's range and of where it ends; which way they lie tells which way is better.
+    /// `limits` are those of the theory's range and of where it ends; their order shows which direction is better.
     pub(crate) fn new(check: &'static str, value: f64, limits: [f64; 2], says: String) -> Check {
         let [within, outside] = limits;
         let rises = outside > within;

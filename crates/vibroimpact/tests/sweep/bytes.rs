@@ -47,7 +47,7 @@ fn rows_contain_the_results_of_their_scenes() {
         let error = row.get(row.len() - 1).unwrap();
         if modes > 3 {
             failed += 1;
-            assert_eq!(error, "modes = 4 is not allowed: at most 3, the number of modes listed");
+            assert_eq!(error, "modes = 4 is not allowed; it must be at most 3, the number of listed modes");
             assert!(row.iter().skip(5).take(row.len() - 6).all(str::is_empty), "{row:?}");
             continue;
         }

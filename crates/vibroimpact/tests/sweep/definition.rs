@@ -74,52 +74,70 @@ fn refused(change: impl FnOnce(&mut Value), message: &str) {
 
 #[test]
 fn errors_of_the_sweep_file_name_their_field() {
-    refused(|file| file["vary"] = json!({}), "vary = {} is not allowed: a list of axes");
-    refused(|file| file["vary"][0] = json!(3), "vary[0] = 3 is not allowed: an object");
-    refused(|file| file["vary"][0]["from"] = json!("x"), "vary[0].from = \"x\" is not allowed: a finite number");
+    refused(|file| file["vary"] = json!({}), "vary = {} is not allowed; it must be a list of axes");
+    refused(|file| file["vary"][0] = json!(3), "vary[0] = 3 is not allowed; it must be an object");
+    refused(
+        |file| file["vary"][0]["from"] = json!("x"),
+        "vary[0].from = \"x\" is not allowed; it must be a finite number",
+    );
     refused(|file| file["vary"][0]["from"] = json!(-1), "vary[0].from = -1.0 is not allowed");
-    refused(|file| file["vary"][0]["to"] = json!(0.01), "vary[0].to = 0.01 is not allowed: a finite number other than");
-    refused(|file| file["vary"][0]["count"] = json!(1), "vary[0].count = 1 is not allowed: a whole number from 2");
+    refused(
+        |file| file["vary"][0]["to"] = json!(0.01),
+        "vary[0].to = 0.01 is not allowed; it must be a finite number other than",
+    );
+    refused(
+        |file| file["vary"][0]["count"] = json!(1),
+        "vary[0].count = 1 is not allowed; it must be a whole number from 2",
+    );
     refused(|file| file["vary"][0]["count"] = json!(2.5), "vary[0].count = 2.5 is not allowed");
     refused(
         |file| file["vary"][0]["scale"] = json!("cubic"),
-        "vary[0].scale = \"cubic\" is not allowed: linear or log",
+        "vary[0].scale = \"cubic\" is not allowed; it must be linear or log",
     );
-    refused(|file| file["vary"][0]["step"] = json!(1), "vary[0].step = 1 is not allowed: unknown field");
-    refused(|file| file["vary"][1]["values"] = json!([]), "vary[1].values = [] is not allowed: a list of at least one");
+    refused(|file| file["vary"][0]["step"] = json!(1), "vary[0].step = 1 is not a known field");
+    refused(
+        |file| file["vary"][1]["values"] = json!([]),
+        "vary[1].values = [] is not allowed; it must be a list of at least one",
+    );
     refused(|file| file["vary"][1]["count"] = json!(3), "vary[1].values = [1,3,4] is not allowed");
     refused(|file| drop(file["vary"][0].as_object_mut().unwrap().remove("count")), "vary[0].count is missing");
     refused(
         |file| drop(file["vary"][0].as_object_mut().unwrap().remove("field")),
-        "vary[0].field is missing: the path",
+        "vary[0].field is missing; it must be the path",
     );
-    refused(|file| file["random"]["draws"] = json!(0), "random.draws = 0 is not allowed: a whole number from 1");
+    refused(
+        |file| file["random"]["draws"] = json!(0),
+        "random.draws = 0 is not allowed; it must be a whole number from 1",
+    );
     refused(|file| file["random"]["seed"] = json!(-1), "random.seed = -1 is not allowed");
     refused(|file| file["random"]["fields"] = json!([]), "random.fields = [] is not allowed");
     refused(|file| file["random"]["fields"][1]["to"] = json!(null), "random.fields[1].to = null is not allowed");
     refused(|file| drop(file.as_object_mut().unwrap().remove("scene")), "scene is missing");
-    refused(|file| *file = json!({ "scene": scene() }), "vary is missing: give vary, random or uncertain");
-    refused(|file| *file = json!([1]), "is not allowed: a sweep is an object");
+    refused(
+        |file| *file = json!({ "scene": scene() }),
+        "vary is missing; it must be given, unless random or uncertain is",
+    );
+    refused(|file| *file = json!([1]), "is not allowed; it must be an object");
     refused(|file| file["scene_file"] = json!("a.json"), "left out in the presence of scene_file");
 }
 
 #[test]
 fn fields_that_the_scene_does_not_have_are_refused() {
     let field = |path: &'static str| move |file: &mut Value| file["vary"][0]["field"] = json!(path);
-    refused(field("striker.mas_kg"), "vary[0].field = \"striker.mas_kg\" is not allowed: unknown field");
+    refused(field("striker.mas_kg"), "vary[0].field = \"striker.mas_kg\" is not a known field");
     refused(
         field("strike.mass_kg"),
-        "vary[0].field = \"strike.mass_kg\" is not allowed: the path of a field of the scene; the scene has no strike",
+        "vary[0].field = \"strike.mass_kg\" is not allowed; it must be the path of a field of the scene, but the scene has no strike",
     );
     refused(field("structure.omega_rad_s[3]"), "structure.omega_rad_s has 3 entries");
-    refused(field("striker..mass_kg"), "vary[0].field = \"striker..mass_kg\" is not allowed: the path");
+    refused(field("striker..mass_kg"), "vary[0].field = \"striker..mass_kg\" is not allowed; it must be the path");
     refused(
         field("modes"),
-        "vary[1].field = \"modes\" is not allowed: a field that does not overwrite that of vary[0]",
+        "vary[1].field = \"modes\" is not allowed; it must be a field that does not overwrite the field of vary[0]",
     );
     refused(
         |file| file["random"]["fields"][0]["field"] = json!("striker"),
-        "random.fields[0].field = \"striker\" is not allowed: a field that does not overwrite that of vary[0]",
+        "random.fields[0].field = \"striker\" is not allowed; it must be a field that does not overwrite the field of vary[0]",
     );
 }
 
@@ -137,11 +155,11 @@ fn values_that_a_field_cannot_have_are_refused() {
 fn an_invalid_base_scene_is_refused() {
     refused(
         |file| file["scene"]["contact"]["law"] = json!("glue"),
-        "scene.contact.law = \"glue\" is not allowed: one of",
+        "scene.contact.law = \"glue\" is not allowed; it must be one of",
     );
     refused(|file| file["scene"]["contact"]["stiffness_n_m1_5"] = json!(-1), "scene.contact.stiffness_n_m1_5 = -1");
     refused(|file| drop(file["scene"].as_object_mut().unwrap().remove("contact")), "scene.contact is missing");
-    refused(|file| file["scene"] = json!(7), "scene = 7 is not allowed: a scene as an object");
+    refused(|file| file["scene"] = json!(7), "scene = 7 is not allowed; it must be a scene as an object");
 }
 
 #[test]
@@ -153,7 +171,7 @@ fn huge_sweeps_are_refused() {
             file["vary"][0]["count"] = json!(1_000_000_000);
             file["random"]["draws"] = json!(1_000_000_000);
         },
-        "number of points = 1000000000 x 3 x 1000000000 is not allowed: at most 1e12 in all",
+        "number of points = 1000000000 x 3 x 1000000000 is not allowed; it must be at most 1e12",
     );
 }
 

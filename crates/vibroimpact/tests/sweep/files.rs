@@ -49,12 +49,13 @@ fn errors_of_the_text_name_a_sweep_and_newer_files() {
         early.contains("the text ends too early") && early.ends_with("a sweep is one complete JSON object"),
         "{early}"
     );
-    assert!(told("{ \"version\": 2, \"grid\": [] }").contains("versions of the sweep format up to 1"));
-    assert!(told("{ \"version\": \"1\" }").contains("version = \"1\" is not allowed: a whole number, the version"));
+    assert!(told("{ \"version\": 2, \"grid\": [] }").contains("at most 1, the newest version of the sweep format"));
+    assert!(told("{ \"version\": \"1\" }").contains("version = \"1\" is not allowed; it must be the whole number 1"));
     assert!(
-        told("{ \"$schema\": 3 }").contains("$schema = 3 is not allowed: a text: the address of the schema of sweeps")
+        told("{ \"$schema\": 3 }")
+            .contains("$schema = 3 is not allowed; it must be a text, the address of the schema of sweeps")
     );
-    assert!(told("[1]").contains("the sweep = [1] is not allowed: a sweep is an object"));
+    assert!(told("[1]").contains("the sweep = [1] is not allowed; it must be an object"));
     assert!(told("{ \"vary\": [{ \"from\": NaN }] }").contains("vary[0].from = NaN is not allowed"));
     let located = Sweep::from_toml("version = 1\n[vary\n").unwrap_err().to_string();
     assert!(located.starts_with("line 2, column"), "{located}");

@@ -106,7 +106,7 @@ fn it_ends_once_the_sampling_error_is_small_enough_despite_interruptions() {
     assert_same(&bench.path("out"), &bench.path("again"));
     // Parts cannot know when the whole suffices.
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "part", "--shard", "1/2"]);
-    assert!(told.contains("sampling.sampling_error = 0.004 must be left out"), "{told}");
+    assert!(told.contains("sampling.sampling_error = 0.004 is not allowed; it must be left out"), "{told}");
     assert!(!bench.path("part").exists());
 }
 
@@ -207,63 +207,80 @@ fn errors_name_field_value_and_what_is_allowed() {
     };
     let distribution = |value: Value| move |sweep: &mut Value| sweep["uncertain"]["striker.mass_kg"] = value.clone();
     let of_mass = "uncertain.striker.mass_kg = ";
-    let list =
-        "is not allowed: an object with one of uniform, log-uniform, normal and lognormal, which is a list of two";
+    let list = "is not allowed; it must be an object with one of uniform, log-uniform, normal and lognormal, which is a list of two";
     for (value, allowed) in [
         (json!(3), list),
         (json!({ "gauss": [1, 2] }), list),
         (json!({ "normal": [1] }), list),
         (json!({ "normal": [1, 2], "uniform": [1, 2] }), list),
-        (json!({ "normal": [1, 0] }), "is not allowed: a finite mean and a positive standard deviation"),
-        (json!({ "uniform": [2, 1] }), "is not allowed: two finite numbers, the first below the second"),
-        (json!({ "log-uniform": [0, 1] }), "is not allowed: two positive numbers, the first below the second"),
-        (json!({ "lognormal": [-1, 1] }), "is not allowed: a positive median and a positive standard deviation"),
+        (
+            json!({ "normal": [1, 0] }),
+            "is not allowed; it must be stated by a finite mean and a positive standard deviation",
+        ),
+        (
+            json!({ "uniform": [2, 1] }),
+            "is not allowed; it must be stated by two finite numbers, the first below the second",
+        ),
+        (
+            json!({ "log-uniform": [0, 1] }),
+            "is not allowed; it must be stated by two positive numbers, the first below the second",
+        ),
+        (
+            json!({ "lognormal": [-1, 1] }),
+            "is not allowed; it must be stated by a positive median and a positive standard deviation",
+        ),
     ] {
         refused(&distribution(value.clone()), &format!("{of_mass}{value} {allowed}"));
     }
-    refused(&|sweep| sweep["uncertain"] = json!({}), "uncertain = {} is not allowed: an object with 1 to 128 fields");
+    refused(
+        &|sweep| sweep["uncertain"] = json!({}),
+        "uncertain = {} is not allowed; it must be an object with 1 to 128 fields",
+    );
     refused(&|sweep| sweep["uncertain"]["striker.weight"] = json!({ "normal": [1, 2] }), "uncertain.striker.weight = ");
     refused(&|sweep| sweep["uncertain"]["a..b"] = json!({ "normal": [1, 2] }), "uncertain.a..b = ");
     refused(&|sweep| sweep["uncertain"]["structure.kind"] = json!({ "normal": [1, 2] }), "uncertain.structure.kind = ");
     refused(
         &|sweep| sweep["sampling"]["draws"] = json!(16),
-        "sampling.draws = 16 is not allowed: a whole number from 32",
+        "sampling.draws = 16 is not allowed; it must be a whole number from 32",
     );
     refused(&|sweep| sweep["sampling"]["draws"] = json!(-1), "sampling.draws = -1 is not allowed");
     refused(&|sweep| sweep["sampling"]["draws"] = json!(2_000_000_000_000u64), "sampling.draws = 2000000000000");
     refused(
         &|sweep| sweep["sampling"]["replicates"] = json!(1),
-        "sampling.replicates = 1 is not allowed: a whole number",
+        "sampling.replicates = 1 is not allowed; it must be a whole number",
     );
     refused(
         &|sweep| sweep["sampling"]["sequence"] = json!("sobel"),
-        "sampling.sequence = \"sobel\" is not allowed: sobol",
+        "sampling.sequence = \"sobel\" is not allowed; it must be sobol",
     );
     refused(&|sweep| sweep["sampling"]["sampling_error"] = json!(0), "sampling.sampling_error = 0.0 is not allowed");
-    refused(&|sweep| sweep["sampling"]["indices"] = json!(3), "sampling.indices = 3 is not allowed: true or false");
+    refused(
+        &|sweep| sweep["sampling"]["indices"] = json!(3),
+        "sampling.indices = 3 is not allowed; it must be true or false",
+    );
     refused(
         &|sweep| {
             let many = (0..65).map(|k| (format!("structure.omega_rad_s[{k}]"), json!({ "normal": [1, 0.1] })));
             sweep["uncertain"] = many.collect();
             sweep["sampling"]["indices"] = json!(true);
         },
-        "sampling.indices = true must be left out with more than 64 uncertain fields; there are 65",
+        "sampling.indices = true is not allowed; it must be left out, because indices need at most 64 uncertain fields and there are 65",
     );
-    refused(&|sweep| sweep["sampling"]["count"] = json!(3), "sampling.count = 3 is not allowed: unknown field");
+    refused(&|sweep| sweep["sampling"]["count"] = json!(3), "sampling.count = 3 is not a known field");
     refused(&|sweep| drop(sweep.as_object_mut().unwrap().remove("uncertain")), "uncertain is missing");
     refused(
         &|sweep| {
             sweep["vary"] = json!([{ "field": "striker.speed_m_s", "values": [1, 2] }]);
             sweep["sampling"]["sampling_error"] = json!(0.1);
         },
-        "sampling.sampling_error = 0.1 must be left out in the presence of vary",
+        "sampling.sampling_error = 0.1 is not allowed; it must be left out in the presence of vary",
     );
     refused(
         &|sweep| {
             let speeds = json!([{ "field": "striker.speed_m_s", "from": 1, "to": 2 }]);
             sweep["random"] = json!({ "seed": 1, "draws": 2, "fields": speeds });
         },
-        "random = {...} must be left out in the presence of uncertain",
+        "random = {...} is not allowed; it must be left out in the presence of uncertain",
     );
 }
 
@@ -305,15 +322,15 @@ fn predictability_maps_the_width_under_a_blur() {
         assert!(!bench.path("out").exists());
     };
     refused(&["--over", "striker.mass_kg=0:1:3:log"], "--over striker.mass_kg, from = 0.0 is not allowed");
-    refused(&["--over", "striker.mass_kg=0:1"], "give FIELD=FROM:TO:COUNT");
+    refused(&["--over", "striker.mass_kg=0:1"], "it must be FIELD=FROM:TO:COUNT");
     refused(&["--over", "striker.mass_kg=NaN:1:3"], "--over striker.mass_kg, from");
     refused(&["--over", "striker.weight=1:2:3"], "--over striker.weight");
     refused(&["--over", shape, "--blur", "striker.weight=1"], "--blur = \"striker.weight\" is not allowed");
-    refused(&["--over", shape, "--blur", "striker.mass_kg=x"], "give FIELD=WIDTH");
+    refused(&["--over", shape, "--blur", "striker.mass_kg=x"], "it must be FIELD=WIDTH");
     refused(
         &["--over", shape, "--blur", "striker.mass_kg=-1%"],
         "--blur striker.mass_kg = {\"lognormal\":[0.1,-0.01]}",
     );
-    refused(&["--over", shape, "--draws", "3"], "--draws = 3 is not allowed: a whole number from 32");
+    refused(&["--over", shape, "--draws", "3"], "--draws = 3 is not allowed; it must be a whole number from 32");
     refused(&["--over", shape, "--over", "a=1:2:3", "--over", "b=1:2:3"], "--over = 3 fields is not allowed");
 }

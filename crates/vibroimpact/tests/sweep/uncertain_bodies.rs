@@ -117,24 +117,32 @@ fn errors_name_field_value_and_what_is_allowed() {
         (
             "/sampling/outputs",
             json!(["wall.force_n"]),
-            "sampling.outputs[0] = \"wall.force_n\" is not allowed: one of end_s, ",
+            "sampling.outputs[0] = \"wall.force_n\" is not allowed; it must be one of end_s, ",
         ),
         (
             "/sampling/outputs",
             json!(["end_s", "end_s"]),
-            "sampling.outputs[1] = \"end_s\" is not allowed: each result once",
+            "sampling.outputs[1] = \"end_s\" is not allowed; it must be stated only once",
         ),
-        ("/sampling/outputs", json!([]), "sampling.outputs = 0 names is not allowed: a list of 1 to 32 results"),
-        ("/sampling/outputs", json!([3]), "sampling.outputs[0] = 3 is not allowed: the name of a result of the sweep"),
+        (
+            "/sampling/outputs",
+            json!([]),
+            "sampling.outputs = 0 names is not allowed; it must be a list of 1 to 32 results",
+        ),
+        (
+            "/sampling/outputs",
+            json!([3]),
+            "sampling.outputs[0] = 3 is not allowed; it must be the name of a result of the sweep",
+        ),
         (
             "/sampling/sampling_error",
             json!(0.1),
-            "sampling.sampling_error = 0.1 is not allowed: an object with such a number",
+            "sampling.sampling_error = 0.1 is not allowed; it must be an object with such a number",
         ),
         (
             "/sampling/sampling_error",
             json!({ "end_s": 0.1 }),
-            "sampling.sampling_error.end_s = 0.1 is not allowed: under one of ",
+            "sampling.sampling_error.end_s = 0.1 is not allowed; it must be stated for one of ",
         ),
         (
             "/sampling/sampling_error",
@@ -144,7 +152,7 @@ fn errors_name_field_value_and_what_is_allowed() {
         (
             "/sampling/sampling_error",
             json!("small"),
-            "sampling.sampling_error = \"small\" is not allowed: a number greater than 0",
+            "sampling.sampling_error = \"small\" is not allowed; it must be a number greater than 0",
         ),
         ("/uncertain/contacts[0].length_m", json!({ "normal": [1, 2] }), "uncertain.contacts[0].length_m = "),
     ] {

@@ -145,19 +145,19 @@ pub(super) fn run(
     Ok(fits)
 }
 
-/// Chapter 1: what the law costs against resolving an impact in time, which takes so long (s). Clocks differ from run to
-/// run, so that no more than three powers of ten are told.
+/// Chapter 1: how much faster the law is than resolving an impact in time, which takes `resolved_s`. Measured times differ
+/// from run to run, so that at most three orders of magnitude are counted.
 fn quicker(study: &mut Study, rows: &[FitRow], fits_s: f64, resolved_s: f64) {
-    const TOLD: f64 = 3.0;
+    const COUNTED: f64 = 3.0;
     let evaluated: usize = rows.iter().map(|row| row.evaluations * row.count).sum();
     let powers = (resolved_s / (fits_s / evaluated as f64)).log10().floor();
     study.state(Statement::trend(
-        "powers of ten by which the law is quicker than resolving an impact in time, told up to 3",
+        "orders of magnitude by which the law is faster than resolving an impact in time, counted up to 3",
         "1, 7.2",
         "algebraic, comparatively much quicker: ten minutes for a fit, ten hours for a table",
         (1.0, f64::INFINITY),
         "ten times",
-        powers.min(TOLD),
+        powers.min(COUNTED),
     ));
 }
 

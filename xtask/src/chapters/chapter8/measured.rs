@@ -28,7 +28,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<Point>, Failure> {
     let mut points = Vec::new();
     for (number, row) in table.deserialize::<PointRow>().enumerate() {
         let row = row.map_err(|fault| {
-            format!("{name}: {fault}; needed are the columns length_m, angle_deg, restitution, all of finite numbers")
+            format!("{name}: {fault}; the table must have the columns length_m, angle_deg and restitution, all with finite numbers")
         })?;
         let PointRow { length_m, angle_deg, restitution } = row;
         for (field, value, (low, high)) in [
@@ -38,7 +38,10 @@ pub(super) fn read(path: &Path) -> Result<Vec<Point>, Failure> {
         ] {
             if !(low..=high).contains(&value) {
                 let place = format!("{name}, point {}", number + 1);
-                return Err(format!("{place}: {field} = {value} is not allowed: a number from {low} to {high}").into());
+                return Err(format!(
+                    "{place}: {field} = {value} is not allowed; it must be a number from {low} to {high}"
+                )
+                .into());
             }
         }
         points.push(Point { length_m, angle_deg, restitution });

@@ -30,7 +30,8 @@ pub(crate) struct IntervalChange {
 /// Derivatives of a motion with respect to one parameter.
 #[derive(Clone)]
 pub(crate) struct Tangent {
-    /// Of the modes in the order of [`System`], and of the time at the end of the record; before the end, of the relative motion.
+    /// Derivatives of the modal amplitudes in the order of [`System`]: of the relative motion, and of the whole motion at the end
+    /// of the record. Those of their rates and of the time follow.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     pub time_s: f64,
@@ -40,14 +41,14 @@ pub(crate) struct Tangent {
     pub(super) refused: Option<NoDerivative>,
 }
 
-/// State of a contact from panel to panel: the derivative of ...
+/// Derivatives of the state of a contact, which is passed from panel to panel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
-    /// ... its overlap beyond that of the modes (m),
+    /// Of the part of its overlap that does not come from the modes (m).
     pub reference: f64,
-    /// the numbers of its branch,
+    /// Of the numbers of its branch.
     pub branch: Numbers,
-    /// and of the memory of an open one.
+    /// Of the memory of an open contact.
     pub memory: Numbers,
 }
 

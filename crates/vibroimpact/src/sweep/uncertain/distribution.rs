@@ -8,13 +8,13 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Distribution {
-    /// Equally likely from the first number to the second, which is greater.
+    /// Uniform from the first number to the second, which is greater.
     Uniform([f64; 2]),
-    /// The same of the logarithm; both numbers are positive.
+    /// Uniform in the logarithm; both numbers are positive.
     LogUniform([f64; 2]),
-    /// Mean and standard deviation.
+    /// Normal, by mean and standard deviation.
     Normal([f64; 2]),
-    /// Median, and standard deviation of the natural logarithm; both numbers are positive.
+    /// Lognormal, by the median and the standard deviation of the natural logarithm; both numbers are positive.
     Lognormal([f64; 2]),
 }
 
@@ -23,12 +23,15 @@ impl Distribution {
     pub(super) fn fault(&self) -> Option<&'static str> {
         let finite = |numbers: &[f64; 2]| numbers.iter().all(|number| number.is_finite());
         let (fits, allowed) = match self {
-            Distribution::Uniform([a, b]) => (a < b, "two finite numbers, the first below the second"),
-            Distribution::LogUniform([a, b]) => (0.0 < *a && a < b, "two positive numbers, the first below the second"),
-            Distribution::Normal([_, sd]) => (*sd > 0.0, "a finite mean and a positive standard deviation"),
-            Distribution::Lognormal([median, sd]) => {
-                (*median > 0.0 && *sd > 0.0, "a positive median and a positive standard deviation of the logarithm")
+            Distribution::Uniform([a, b]) => (a < b, "stated by two finite numbers, the first below the second"),
+            Distribution::LogUniform([a, b]) => {
+                (0.0 < *a && a < b, "stated by two positive numbers, the first below the second")
             }
+            Distribution::Normal([_, sd]) => (*sd > 0.0, "stated by a finite mean and a positive standard deviation"),
+            Distribution::Lognormal([median, sd]) => (
+                *median > 0.0 && *sd > 0.0,
+                "stated by a positive median and a positive standard deviation of the logarithm",
+            ),
         };
         let (Distribution::Uniform(n)
         | Distribution::LogUniform(n)

@@ -36,29 +36,29 @@ pub(in crate::sweep) type UncertainEntry = BTreeMap<String, Distribution>;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Sampling")]
 pub(in crate::sweep) struct SamplingEntry {
-    /// What the draws depend on, beside their number; 1 when left out.
+    /// Seed of the draws, which depend only on it and on their number; 1 when left out.
     #[schemars(range(min = 0))]
     seed: Option<u64>,
-    /// At most so many draws, 16384 when left out; rounded down to a power of two of groups in each replicate.
+    /// Largest number of draws, 16384 when left out; rounded down to a power of two of groups in each replicate.
     #[schemars(range(min = 1, max = 1_000_000_000_000u64))]
     draws: Option<u64>,
     /// Scrambled Sobol' points (sobol, when left out) or independent random numbers (random).
     sequence: Option<Sequence>,
-    /// Independent scramblings, from whose scatter the sampling error is told; 16 when left out.
+    /// Number of independent scramblings, whose scatter gives the sampling error; 16 when left out.
     #[schemars(range(min = 2, max = 1000))]
     replicates: Option<u64>,
-    /// Results of the sweep that are told as distributions; the restitution when left out or, of a scene of bodies, the intervals
-    /// of contact, the largest force and the contact work rate.
+    /// Results of the sweep whose distributions are computed. When left out: the restitution or, for a scene of bodies, the
+    /// intervals of contact, the largest force and the contact work rate.
     #[schemars(length(min = 1, max = 32))]
     outputs: Option<Vec<String>>,
-    /// The standard error at which no more draws are made, of the mean and every quantile: a number for a single output, an
+    /// The standard error of the mean and of every quantile at which no more draws are made: a number for a single output, an
     /// object with such numbers for several.
     sampling_error: Option<SamplingError>,
-    /// Whether first and total indices of Sobol' are computed, which takes as many impacts a draw as there are fields, and two.
+    /// Whether first and total indices of Sobol' are computed, which takes two impacts more for each draw than there are fields.
     indices: Option<bool>,
 }
 
-/// One number for the only output, or one for each that is to have it.
+/// One number for the only output, or an object with numbers for some outputs.
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 enum SamplingError {
@@ -96,7 +96,7 @@ impl Uncertain {
                 return Err(fault(allowed()));
             }
             if names[..i].contains(name) {
-                return Err(fault("each result once".to_owned()));
+                return Err(fault("stated only once".to_owned()));
             }
         }
         let wanted = match (told.sampling_error, names.as_slice()) {
@@ -104,7 +104,7 @@ impl Uncertain {
             (Some(SamplingError::OfOne(error)), [one]) => BTreeMap::from([(one.clone(), error)]),
             (Some(SamplingError::OfOne(error)), _) => {
                 let allowed = format!(
-                    "an object with such a number for some of {}, which differ in their units",
+                    "an object with such a number for some of {}, because their units differ",
                     names.join(", ")
                 );
                 return Err(InvalidInput::new("sampling_error", number(error), allowed));
@@ -112,7 +112,7 @@ impl Uncertain {
             (Some(SamplingError::OfEach(wanted)), _) => wanted,
         };
         if let Some((name, error)) = wanted.iter().find(|(name, _)| !names.contains(name)) {
-            let allowed = format!("under one of {}", names.join(", "));
+            let allowed = format!("stated for one of {}", names.join(", "));
             return Err(InvalidInput::new(["sampling_error", name], number(*error), allowed));
         }
         let output = |name: String| Output { sampling_error: wanted.get(&name).copied(), name };
@@ -170,8 +170,10 @@ pub(in crate::sweep) fn read(
         return Err(within(InvalidInput::new(field, number(error), "a number greater than 0")));
     }
     if sampling.indices && fields.len() > MOST_WITH_INDICES {
-        let allowed =
-            format!("left out with more than {MOST_WITH_INDICES} uncertain fields; there are {}", fields.len());
+        let allowed = format!(
+            "left out, because indices need at most {MOST_WITH_INDICES} uncertain fields and there are {}",
+            fields.len()
+        );
         return Err(within(InvalidInput::new("indices", "true", allowed)));
     }
     let uncertain = Uncertain::new(fields, sampling);
