@@ -310,8 +310,7 @@ impl Solver {
         found
     }
 
-    /// How far off the restitution may be, from coarser solutions of the same impact. One that ends otherwise says that nothing is
-    /// certain.
+    /// Estimated error of the restitution, from coarser solutions of the same impact: 1 if one of them has no restitution.
     fn uncertainty(
         &self,
         known: &Restitutions,
