@@ -68,6 +68,12 @@ impl Progress {
         }
     }
 
+    /// How many are done, and the total.
+    #[cfg(test)]
+    pub(crate) fn counted(&self) -> (u64, u64) {
+        (self.done.load(Ordering::Relaxed), self.total)
+    }
+
     fn line(&self, done: u64) -> String {
         let colon = if self.part.is_empty() { "" } else { ": " };
         let elapsed_s = self.begun.elapsed().as_secs();

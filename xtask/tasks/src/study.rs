@@ -118,6 +118,25 @@ impl<S> Study<S> {
         impacts: usize,
         job: impl Fn(&C) -> Result<R, Failure> + Sync,
     ) -> Result<Vec<R>, Failure> {
+        let mut all = Vec::with_capacity(cases.len());
+        self.sweep_in_batches(cases, (cases.len().max(1), impacts), job, |results| {
+            all = results;
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// The same in batches of so many cases, each of which is saved before the next one begins.
+    ///
+    /// # Errors
+    /// The first error of `job` or of `save`.
+    pub fn sweep_in_batches<C: Sync, R: Send>(
+        &mut self,
+        cases: &[C],
+        (batch, impacts): (usize, usize),
+        job: impl Fn(&C) -> Result<R, Failure> + Sync,
+        mut save: impl FnMut(Vec<R>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let count = cases.len() * impacts;
         let part = self.part.as_ref().map_or_else(String::new, |part| format!("{part}, "));
         let section = self.timings.last().map_or("", |timing| &timing.section);
@@ -130,7 +149,10 @@ impl<S> Study<S> {
             self.progress.add(impacts as u64);
             result
         };
-        cases.par_iter().map(each).collect()
+        for batch in cases.chunks(batch) {
+            save(batch.par_iter().map(each).collect::<Result<Vec<R>, Failure>>()?)?;
+        }
+        Ok(())
     }
 
     /// All points of a list, or in a quick run the first, the last and a few in between.
@@ -283,5 +305,19 @@ mod tests {
         assert!(quick.windows(2).all(|pair| pair[0] < pair[1]));
         assert_eq!(thinned(false, &all), all);
         assert_eq!(thinned(true, &all[..4]), all[..4]);
+    }
+
+    #[test]
+    fn batches_count_to_one_total() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut study = Study::<()>::new(folder.path(), true).unwrap();
+        let mut saved = Vec::new();
+        let save = |batch: Vec<usize>| {
+            saved.push(batch);
+            Ok(())
+        };
+        study.sweep_in_batches(&[1, 2, 3, 4, 5], (2, 10), |&case| Ok(2 * case), save).unwrap();
+        assert_eq!(saved, [vec![2, 4], vec![6, 8], vec![10]]);
+        assert_eq!(study.progress.counted(), (50, 50));
     }
 }

@@ -100,9 +100,9 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let together = fit(&problem, &settings)?;
     let predicted = cross_validate(&problem, &settings, &labels)?.report;
     study.text(&format!(
-        "{} settled impacts on {beams} beams with Hertz contact. One set of parameters for all: c = {}, q = {}, rms {}. \
+        "{} converged impacts on {beams} beams with Hertz contact. One set of parameters for all: c = {}, q = {}, rms {}. \
          Each beam predicted by the fit to the others: rms {}, 95 of 100 within {}, largest {}. The choice uses the law \
-         only where it is asked for or the tolerance is no tighter than {}.",
+         only where it is requested or the tolerance is no tighter than {}.",
         data.len(),
         significant(together.parameters[0], 4),
         significant(together.parameters[1], 4),

@@ -50,7 +50,7 @@ impl Tally {
     const HEADERS: [&str; 8] = [
         "rows",
         "counted",
-        "said to be settled",
+        "said to have converged",
         "of these within the tolerance",
         "with an uncertainty",
         "of these covered",
@@ -72,7 +72,7 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
     let all = Tally::of(rows.iter());
     let share = |part: usize, whole: usize| part as f64 / whole.max(1) as f64;
     let targets = [
-        ("settled answers within their tolerance", "at least 99.9 %", (0.999, 1.0), share(all.within, all.settled)),
+        ("converged answers within their tolerance", "at least 99.9 %", (0.999, 1.0), share(all.within, all.settled)),
         ("errors within the stated uncertainty", "at least 99.9 %", (0.999, 1.0), share(all.covered, all.stated)),
         ("mode-steps over those of the cheapest model", "at most 2", (0.0, 2.0), geometric(&all.costs)),
     ];
@@ -92,7 +92,7 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
     study.text(&quantiles(&planned));
     study.text(
         "The cheapest model has the fewest modes from which on the error stays within the tolerance, and is solved once, \
-         by who knows that number. A cost is told of settled answers for which modes were integrated.",
+         as if that number were known. The mean cost is that of converged answers for which modes were integrated.",
     );
     let mut lines = vec![[vec!["all".to_owned()], all.cells()].concat()];
     for tolerance in TOLERANCES {
@@ -111,9 +111,9 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
         };
         study.table(&headers(name), &groups.into_iter().map(line).collect::<Vec<_>>());
     }
-    listed(study, "Said to be settled, and beyond the tolerance:", rows, |row| row.settled && !row.meets());
+    listed(study, "Said to have converged, and beyond the tolerance:", rows, |row| row.settled && !row.meets());
     listed(study, "Beyond the stated uncertainty:", rows, |row| row.overrun().is_some_and(|overrun| overrun > 1.0));
-    listed(study, "Not settled:", rows, |row| row.chosen && !row.settled);
+    listed(study, "Not converged:", rows, |row| row.chosen && !row.settled);
     picture(study, rows)
 }
 
@@ -203,12 +203,12 @@ fn picture(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
     };
     // scenes with the same tolerance are spread out horizontally
     let spread = |row: &Row| row.tolerance * 10f64.powf(0.6 * ((row.scene % 97) as f64 / 97.0 - 0.5));
-    let tolerance = panel("tolerance (spread for sight)", spread, 3e-7);
+    let tolerance = panel("tolerance (points spread apart)", spread, 3e-7);
     let uncertainty = panel("reported uncertainty", |row| row.uncertainty.unwrap_or(1.0).max(1e-9), 1e-9);
     study.figure(
         "choosing-the-model",
         &Figure::new("The automatic choice on random scenes").row([tolerance, uncertainty]),
-        "Each mark is one scene at one tolerance. Below the line the error is smaller than what was asked for, and than \
-         what was reported.",
+        "Each mark is one scene at one tolerance. Below the line the error is smaller than the requested tolerance (left) or \
+         the reported uncertainty (right).",
     )
 }
