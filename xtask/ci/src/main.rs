@@ -8,6 +8,8 @@ use std::time::Instant;
 #[cfg(test)]
 mod circles;
 #[cfg(test)]
+mod lock_files;
+#[cfg(test)]
 mod test_files;
 #[cfg(test)]
 mod workflows;
