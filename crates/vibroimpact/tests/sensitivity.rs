@@ -425,6 +425,47 @@ fn the_derivative_by_the_location_vanishes_on_a_pinned_end() {
     }
 }
 
+/// Remainder modes change with their distance from the end, which is a small share of the location near the far one.
+#[test]
+fn derivatives_by_the_location_exist_near_both_ends() {
+    for distance in [1e-4, 1e-5, 1e-6, 1e-7] {
+        let [near, far] = [distance, 1.0 - distance].map(|location| {
+            let tree = changed("pinned-beam-converged.json", |tree| tree["location_m"] = json!(location));
+            let found = Scene::from_value(&tree).unwrap().sensitivity(&["location_m".to_owned()]).unwrap();
+            found.of("restitution", "location_m").unwrap()
+        });
+        // the beam is symmetric, and the restitution falls with the square of the distance
+        let known = near.uncertainty.unwrap() + far.uncertainty.unwrap();
+        assert!((near.value + far.value).abs() <= known, "{distance}: {near:?} {far:?}");
+        assert!((far.value / distance / 12678.2 - 1.0).abs() < 1e-3, "{distance}: {far:?}");
+        assert!(far.uncertainty.unwrap() < 0.1 * far.value, "{distance}: {far:?}");
+    }
+}
+
+/// The curvature of the modes jumps at a step, so that the polynomial through neighbours on both sides does not have their slope.
+#[test]
+fn derivatives_by_the_location_are_correct_at_a_step() {
+    let tree = changed("pinned-beam.json", |tree| {
+        let mut segment = tree["structure"]["segments"][0].clone();
+        segment["length_m"] = json!(0.5);
+        let mut thinner = segment.clone();
+        thinner["thickness_m"] = json!(0.006);
+        tree["structure"]["segments"] = json!([segment, thinner]);
+    });
+    for location in [0.5 - 1e-8, 0.5, 0.5 + 1e-8] {
+        let mut tree = tree.clone();
+        tree["location_m"] = json!(location);
+        tree["tolerance"] = json!(1e-11);
+        let found = Scene::from_value(&tree).unwrap().sensitivity(&["location_m".to_owned()]).unwrap();
+        let derivative = found.of("restitution", "location_m").unwrap();
+        let [before, after] = [-3e-8, 3e-8].map(|by| restitution(&tree, "/location_m", location + by));
+        let reference = (after - before) / 6e-8;
+        let error = (derivative.value - reference).abs();
+        assert!(error < 1e-5 * reference.abs(), "{location}: {derivative:?} {reference}");
+        assert!(derivative.uncertainty.unwrap() < 1e-5 * reference.abs(), "{location}: {derivative:?}");
+    }
+}
+
 /// With a smaller gap the surfaces of the stop would overlap at the start.
 #[test]
 fn derivatives_at_a_touch_at_the_start_hold_on_one_side() {

@@ -155,6 +155,19 @@ impl Beam {
         })
     }
 
+    /// Where segments end and where something is attached or supports the beam, between its ends (m).
+    pub(crate) fn corners_m(&self) -> Vec<f64> {
+        let mut end_m = 0.0;
+        let mut ends_m: Vec<f64> = Vec::with_capacity(self.segments.len());
+        for segment in &self.segments {
+            end_m += segment.length_m;
+            ends_m.push(end_m);
+        }
+        ends_m.pop();
+        let attached_m = self.attachments.iter().map(|attachment| attachment.location_m);
+        ends_m.into_iter().chain(attached_m).chain(self.supports.iter().map(|support| support.location_m)).collect()
+    }
+
     /// Properties of this beam that the slender, uniformly damped beam of the thesis does not have, if any.
     pub(crate) fn beyond_slender(&self) -> Result<Option<&'static str>, InvalidInput> {
         Ok(match self.solved_by()? {

@@ -12,6 +12,7 @@ use super::collect::collect;
 use super::modes::{MODES, Modes};
 use super::neighbours::{Neighbours, Posing, around};
 use super::refusal::Refusal;
+use super::sides::of_tree_of_bodies;
 use super::table::{Miss, Output, Table};
 use crate::assembly::{AssemblyScene, Posed};
 use crate::same_modes::{Match, Seen, matched};
@@ -74,7 +75,7 @@ impl AssemblyScene {
         let base = self.pose()?;
         let pose = |tree: &Value| AssemblyScene::from_value(tree)?.pose();
         let sort = |near: &mut Posed| take_modes_of(&mut near.assembly, &base.assembly);
-        let around = around((&tree, fields), &Posing { pose: &pose, sort: &sort })?;
+        let around = around((&tree, fields), &Posing { pose: &pose, sort: &sort, sides: &of_tree_of_bodies })?;
         let seen = |posed: &Posed| seen(&posed.assembly);
         let modes = Modes::new(seen(&base), around.near.iter().map(|near| near.map(seen)).collect());
         let draws = modes.draws(|errors| with_errors(&base, errors));

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::neighbours::{Neighbours, Posing, around, roughness};
+use super::sides::of_tree;
 use super::single::Sensitivity;
 use super::table::{Output, Table};
 use crate::emoc::Parameters;
@@ -18,7 +19,7 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
     let restitution = |scene: &Scene| scene.answer()?.restitution.ok_or_else(none);
     let value = answer.restitution.ok_or_else(none)?;
     let pose = |tree: &Value| restitution(&Scene::from_value(tree)?);
-    let around = around((&tree, fields), &Posing { pose: &pose, sort: &|_| Ok(()) })?;
+    let around = around((&tree, fields), &Posing { pose: &pose, sort: &|_| Ok(()), sides: &of_tree })?;
     let mut table = Table::new(around.left_out);
     for near in &around.near {
         table.add(&near.field, near.value, vec![output("restitution", near, value, |at| *at)]);

@@ -14,6 +14,7 @@ mod neighbours;
 #[cfg(feature = "files")]
 mod picture;
 mod refusal;
+mod sides;
 mod single;
 mod table;
 mod text;
@@ -83,7 +84,7 @@ impl Scene {
         let base = scene.impact_beside(&scene, &mut kept.borrow_mut())?;
         let pose = |tree: &Value| Scene::from_value(tree)?.impact_beside(&scene, &mut kept.borrow_mut());
         let sort = |impact: &mut Impact| impact.take_modes_of(&base);
-        let around = neighbours::around((&tree, fields), &Posing { pose: &pose, sort: &sort })?;
+        let around = neighbours::around((&tree, fields), &Posing { pose: &pose, sort: &sort, sides: &sides::of_tree })?;
         differentiate(&scene, &base, &around, tree)
     }
 }

@@ -1,15 +1,19 @@
 //! A scene at neighbouring values of one of its numbers.
 
+use std::cmp::Ordering;
+
 use serde_json::Value;
 use vibroimpact_sim::modal::{Derivative, Stencil};
 
+use super::sides::stay;
 use super::table::LeftOut;
 use crate::scene::json::{number, quote};
 use crate::scene::{FieldPath, InvalidInput};
 
 /// Distance of neighbours relative to the value: the first hundreds of modes change smoothly over it, and it costs five of their
-/// digits. Modes that change more, such as the remainder modes near a free end, need a smaller one.
-const STEPS: [f64; 2] = [1e-5, 1e-7];
+/// digits. Modes that change more need a smaller one: remainder modes near an end or a support change with their distance from
+/// it, which may be any share of the value.
+const STEPS: [f64; 5] = [1e-5, 1e-7, 1e-9, 1e-11, 1e-13];
 /// The same where the value is zero, in its unit.
 const STEPS_AT_ZERO: [f64; 3] = [1e-6, 1e-9, 1e-12];
 /// Neighbours on both sides, or on one side of a bound, in steps.
@@ -35,6 +39,8 @@ pub(super) struct Around<T> {
 pub(super) struct Posing<'a, T> {
     pub pose: &'a dyn Fn(&Value) -> Result<T, InvalidInput>,
     pub sort: &'a dyn Fn(&mut T) -> Result<(), &'static str>,
+    /// The sides of corners on which the scene's points lie.
+    pub sides: &'a dyn Fn(&Value) -> Vec<Ordering>,
 }
 
 impl<T> Neighbours<T> {
@@ -58,13 +64,19 @@ impl<T> Neighbours<T> {
         by: &Posing<T>,
     ) -> Result<Neighbours<T>, String> {
         let steps: &[f64] = if value == 0.0 { &STEPS_AT_ZERO } else { &STEPS.map(|step| step * value.abs()) };
+        let here = (by.sides)(tree);
         let mut reason = String::new();
         for step in steps {
             let (mut faults, mut differs) = (Vec::new(), false);
             for places in PLACES {
-                let mut posed = Vec::with_capacity(4);
+                let (mut posed, mut sides) = (Vec::with_capacity(4), Vec::with_capacity(4));
                 for place in places {
-                    match changed(tree, path, value + place * step).and_then(|tree| (by.pose)(&tree)) {
+                    let near = changed(tree, path, value + place * step).and_then(|tree| {
+                        let posed = (by.pose)(&tree)?;
+                        sides.push((by.sides)(&tree));
+                        Ok(posed)
+                    });
+                    match near {
                         Ok(near) => posed.push(near),
                         Err(fault) => {
                             faults.push(fault);
@@ -73,6 +85,10 @@ impl<T> Neighbours<T> {
                     }
                 }
                 let Ok(mut at) = <[T; 4]>::try_from(posed) else { continue };
+                if !stay(&here, &sides) {
+                    (reason, differs) = ("a point passes a corner of the modes".to_owned(), true);
+                    continue;
+                }
                 match at.iter_mut().try_for_each(by.sort) {
                     Ok(()) => {
                         // the value is an integer or a float as in the file, and so are its neighbours
