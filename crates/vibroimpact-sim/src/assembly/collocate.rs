@@ -112,14 +112,17 @@ impl Newton {
                 }
                 let compression = moved.map(|moved| unknown.start + moved);
                 found[c].compression = compression;
-                values[c] =
-                    std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
+                for i in 0..Q {
+                    values[c][i] = unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]);
+                }
                 counts.law_evaluations += Q as u64;
                 if found[c].force_by_rate {
                     let tells = |value: &Force| value.per_rate_n_s_m != 0.0;
                     found[c].force_by_rate = values[c].iter().any(tells) || values[c].iter().all(|v| v.force_n == 0.0);
                 }
-                change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
+                for i in 0..Q {
+                    change[c][i] = values[c][i].force_n - found[c].force[i];
+                }
             }
             if !factored {
                 blocks.factor_stiff(values, response, h);

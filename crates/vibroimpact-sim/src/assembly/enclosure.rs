@@ -10,7 +10,7 @@
 
 use super::interpolation::{FOLLOWED, Missed, ORDERS, OVERDAMPED, interpolation};
 use super::load::Loads;
-use super::system::{Link, System};
+use super::system::{Link, Span, System};
 use super::terminal::value;
 use crate::panel::legendre::TAYLOR;
 use crate::panel::vector::{sum_over, vectorized};
@@ -169,6 +169,7 @@ impl FlightBounds {
     /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of all but
     /// the elastic modes, relative to the overlap of touch. `bend` bounds the second derivative by the loads (m/s^2), and `noise`
     /// is the rounding of the overlap (m).
+    #[inline(always)]
     pub fn safe_time(
         &self,
         link: &Link,
@@ -178,12 +179,22 @@ impl FlightBounds {
         (amplitude, mode_rate): (&[f64], &[f64]),
     ) -> f64 {
         let (mut next, mut best) = (0, 0.0f64);
+        let row = link.in_a_row.as_ref().map(|Span { modes, psi }| {
+            let (a, b) = (&amplitude[modes.clone()], &mode_rate[modes.clone()]);
+            (psi.as_slice(), a, b)
+        });
         for &(cut, above, curvature) in &self.cuts {
-            for &(k, psi) in &link.elastic[next..cut] {
-                overlap += psi * amplitude[k];
-                rate += psi * mode_rate[k];
-            }
-            next = cut;
+            let [moved, speed] = match row {
+                Some((psi, a, b)) => sum_over(
+                    [&psi[next..cut], &a[next..cut], &b[next..cut]],
+                    #[inline(always)]
+                    |[psi, a, b]| [psi * a, psi * b],
+                ),
+                None => link.elastic[next..cut].iter().fold([0.0; 2], |[moved, speed], &(k, psi)| {
+                    [moved + psi * amplitude[k], speed + psi * mode_rate[k]]
+                }),
+            };
+            (overlap, rate, next) = (overlap + moved, rate + speed, cut);
             let curvature = curvature + bend;
             let mut separation = -overlap - above;
             // surfaces that have just parted overlap by rounding
@@ -273,6 +284,9 @@ pub(crate) fn first_difference(
 
 /// Bound on the second derivative of the overlap of a contact by the loads within `lasting_s` (m/s^2).
 pub(crate) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_s: f64) -> f64 {
+    if loads.is_empty() {
+        return 0.0;
+    }
     let lasting_s = if lasting_s.is_finite() { lasting_s } else { 0.0 };
     let lines = loads.acceleration(contact, time_s).max(loads.acceleration(contact, time_s + lasting_s)).max(0.0);
     let harmonics = loads.harmonics.iter().map(|h| h.omega_rad_s.powi(2) * h.contacts[contact].norm());

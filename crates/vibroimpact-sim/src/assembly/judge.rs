@@ -34,7 +34,11 @@ impl<'a> March<'a> {
         enclosed: bool,
     ) -> Judgement {
         let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
-        let pulls = if enclosed { self.pulls(&contacts[..closed]) } else { Vec::new() };
+        let mut pulls = std::mem::take(&mut self.pulls);
+        pulls.clear();
+        if enclosed {
+            pulls.extend(self.pulls_of(&contacts[..closed]));
+        }
         for (i, &c) in contacts.iter().enumerate() {
             let state = &self.states[c];
             let mut rho = [0.0; 3];
@@ -98,6 +102,7 @@ impl<'a> March<'a> {
                 }
             }
         }
+        self.pulls = pulls;
         match first {
             Some((target, place)) => Judgement::Meets(target, place),
             None if doubtful => Judgement::Doubtful,
@@ -173,13 +178,13 @@ impl<'a> March<'a> {
     }
 
     /// The forces of closed contacts at the start of a panel.
-    fn pulls(&self, closed: &[usize]) -> Vec<Pull<'a>> {
+    fn pulls_of<'s>(&'s self, closed: &'s [usize]) -> impl Iterator<Item = Pull<'a>> + 's {
         let pull = |c: &usize| {
             let (force, h) = self.states[*c].touch()?.previous?;
             // P_n' is n (n+1) at the end of [0, 1]
             let slope: f64 = force.0.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
             Some(Pull { link: &self.system.links[*c], force_n: force.at(1.0), rate_n_s: slope / h })
         };
-        closed.iter().filter_map(pull).collect()
+        closed.iter().filter_map(pull)
     }
 }

@@ -265,6 +265,9 @@ impl Loads {
     /// Change of the overlap of a contact by the loads within `h` seconds from `time_s` on, and of its rate, beyond the free motion
     /// of the modes from `time_s`.
     pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
+        if self.is_empty() {
+            return (0.0, 0.0);
+        }
         let turns = self.harmonics.iter().map(|harmonic| (harmonic.turn(time_s), swept(harmonic.omega_rad_s * h)));
         self.moved_by(contact, time_s, h, turns)
     }
@@ -283,7 +286,11 @@ impl Loads {
     }
 
     /// [`Loads::moved`] up to a node of a panel of `h`, by its number, or to its end.
+    #[inline]
     pub fn moved_on(&self, contact: usize, (time_s, h): (f64, f64), turns: &Turns, place: usize) -> (f64, f64) {
+        if self.is_empty() {
+            return (0.0, 0.0);
+        }
         let turns = turns.start.iter().copied().zip(turns.swept[place].iter().copied());
         self.moved_by(contact, time_s, part(place, h), turns)
     }
@@ -295,9 +302,6 @@ impl Loads {
         h: f64,
         turns: impl Iterator<Item = (Complex64, Complex64)>,
     ) -> (f64, f64) {
-        if self.is_empty() {
-            return (0.0, 0.0);
-        }
         let line = &self.contacts[contact];
         let acceleration = self.acceleration(contact, time_s);
         let mut moved = h * (line.shift_rate + h * (0.5 * acceleration + h * line.jerk / 6.0));

@@ -2,7 +2,7 @@
 
 use super::collocate::Newton;
 use super::dense::{Event, Stretch};
-use super::enclosure::Held;
+use super::enclosure::{Held, Pull};
 use super::ledger::{Account, Moment, Sum};
 use super::load::Loads;
 use super::miss::Misses;
@@ -62,6 +62,7 @@ pub(crate) struct March<'a> {
     /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Memory for the enclosures, and for Newton's method.
+    pub(super) pulls: Vec<Pull<'a>>,
     pub(super) held: Held,
     pub(super) newton: Newton,
     /// Step exponent of the next trial panel.
@@ -134,6 +135,7 @@ impl<'a> March<'a> {
             pending: Vec::new(),
             misses: None,
             departure: (0.0, Vec::new(), Vec::new()),
+            pulls: Vec::new(),
             held: Held::default(),
             newton: Newton::default(),
             level: J_MIN,

@@ -28,6 +28,8 @@ pub(crate) struct Link {
     pub sides: [Option<Span>; 2],
     /// Elastic modes that move it, by increasing frequency: number and `psi`.
     pub elastic: Vec<(usize, f64)>,
+    /// The same, if they follow each other in the list of all modes.
+    pub in_a_row: Option<Span>,
     /// Rigid modes that move it: number and `psi`.
     pub rigid: Vec<(usize, f64)>,
     /// `sum psi_k^2` over all modes (1/kg): the change of its rate by a unit impulse.
@@ -176,7 +178,10 @@ impl System {
         let (rigid, mut elastic): (Vec<_>, Vec<_>) = moving.partition(|(k, _)| self.modes[*k].is_rigid());
         elastic.sort_by(|a, b| self.modes[a.0].omega_rad_s.total_cmp(&self.modes[b.0].omega_rad_s));
         let mobility = rigid.iter().chain(&elastic).map(|(_, psi)| psi * psi).sum();
-        Link { spans, sides, elastic, rigid, mobility }
+        let first = elastic.first().map_or(0, |(k, _)| *k);
+        let row = || Span { modes: first..first + elastic.len(), psi: elastic.iter().map(|(_, psi)| *psi).collect() };
+        let in_a_row = elastic.iter().enumerate().all(|(i, (k, _))| *k == first + i).then(row);
+        Link { spans, sides, elastic, in_a_row, rigid, mobility }
     }
 
     /// Inverse effective mass at a contact (1/kg): that of the rigid modes, or of all modes if there is no rigid one.

@@ -41,6 +41,8 @@ struct Expanded {
     forced: Forced,
     /// `[c][c']`, where requested: the response of the elastic modes, for contacts that share some.
     elastic: Vec<OnceLock<Box<Response>>>,
+    /// The modes that are integrated by parts, once responses with other weights are requested.
+    by_parts: OnceLock<Vec<ByParts>>,
 }
 
 #[derive(Default)]
@@ -144,9 +146,9 @@ impl Tables {
         let expanded = self.level(j).expanded.get_or_init(|| {
             let (forced, sums) = Forced::new(system, step_s(j), self.rotation(system, j + 1), &weights);
             found = Some(sums);
-            Expanded { forced, elastic: unset(count) }
+            Expanded { forced, elastic: unset(count), by_parts: OnceLock::new() }
         });
-        let found = found.unwrap_or_else(|| Forced::again(system, step_s(j), &weights));
+        let found = found.unwrap_or_else(|| again(system, step_s(j), &weights, &expanded.by_parts));
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
             // another thread may have been first; its result is the same
@@ -275,7 +277,8 @@ impl Forced {
                         vectorized(
                             #[inline(always)]
                             || {
-                                let by_parts = sums.add_by_parts(modes.clone());
+                                let by_parts = lanes_by_parts(system, modes.clone(), h);
+                                sums.add_by_parts(modes.clone(), &by_parts);
                                 let (displacement, velocity) = by_parts.end();
                                 forced.amplitude.set_lanes(first, modes.len(), &displacement);
                                 forced.rate.set_lanes(first, modes.len(), &velocity);
@@ -299,35 +302,27 @@ impl Forced {
         (forced, sums.at_nodes())
     }
 
-    /// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
-    /// [`Forced::new`].
-    fn again(system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<[Nodal; Q]> {
-        let mut sums = Sums::new(system, h, weights);
-        for body in &system.bodies {
-            for (modes, way) in alike(&system.modes, body.clone(), h) {
-                if way == Way::ByParts {
-                    vectorized(
-                        #[inline(always)]
-                        || sums.add_by_parts(modes.clone()),
-                    );
-                } else {
-                    sums.add_one(modes.start, way);
-                }
-            }
-            sums.end_body();
-        }
-        sums.at_nodes()
-    }
-
     /// Response of the elastic modes with these weights at the end.
     fn end(&self, system: &System, weights: &[f64]) -> (Nodal, Nodal) {
         let elastic = |(weight, mode): (&f64, &BodyMode)| if mode.is_rigid() { 0.0 } else { -weight };
         let weights: Vec<f64> = weights.iter().zip(&system.modes).map(elastic).collect();
-        let sum = |row: &[f64]| {
-            let [sum] = sum_over([&weights, row], |[weight, response]| [weight * response]);
-            sum
+        let rows = |table: &Rows<Q>| {
+            let rows = table.part(0, weights.len());
+            vectorized(
+                #[inline(always)]
+                || {
+                    let mut sums = [0.0; Q];
+                    for n in 0..Q {
+                        [sums[n]] = sum_over(
+                            [&weights, rows[n]],
+                            #[inline(always)]
+                            |[weight, response]| [weight * response],
+                        );
+                    }
+                    sums
+                },
+            )
         };
-        let rows = |table: &Rows<Q>| table.part(0, weights.len()).map(sum);
         (rows(&self.amplitude), rows(&self.rate))
     }
 
@@ -364,6 +359,43 @@ impl Forced {
             },
         );
     }
+}
+
+/// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
+/// [`Forced::new`].
+fn again(system: &System, h: f64, weights: &[Vec<f64>], by_parts: &OnceLock<Vec<ByParts>>) -> Vec<[Nodal; Q]> {
+    let groups = || system.bodies.iter().flat_map(|body| alike(&system.modes, body.clone(), h));
+    let new = |(modes, _)| {
+        vectorized(
+            #[inline(always)]
+            || lanes_by_parts(system, modes, h),
+        )
+    };
+    let by_parts = by_parts.get_or_init(|| groups().filter(|(_, way)| *way == Way::ByParts).map(new).collect());
+    let mut by_parts = by_parts.iter();
+    let mut sums = Sums::new(system, h, weights);
+    for body in &system.bodies {
+        for (modes, way) in alike(&system.modes, body.clone(), h) {
+            if way != Way::ByParts {
+                sums.add_one(modes.start, way);
+            } else if let Some(by_parts) = by_parts.next() {
+                vectorized(
+                    #[inline(always)]
+                    || sums.add_by_parts(modes, by_parts),
+                );
+            }
+        }
+        sums.end_body();
+    }
+    sums.at_nodes()
+}
+
+/// At most [`LANES`] modes by parts; the last ones are padded by modes that get no weight.
+#[inline(always)]
+fn lanes_by_parts(system: &System, modes: Range<usize>, h: f64) -> ByParts {
+    let mut padded = [system.modes[modes.start]; LANES];
+    padded[..modes.len()].copy_from_slice(&system.modes[modes]);
+    ByParts::new(&padded, h)
 }
 
 /// Partial sums of responses over the modes, for each list of weights.
@@ -404,17 +436,12 @@ impl Sums<'_> {
 
     /// Adds at most [`LANES`] modes that are integrated by parts.
     #[inline(always)]
-    fn add_by_parts(&mut self, modes: Range<usize>) -> ByParts {
-        // the last ones are padded by modes without weight
-        let mut padded = [self.system.modes[modes.start]; LANES];
-        padded[..modes.len()].copy_from_slice(&self.system.modes[modes.clone()]);
-        let by_parts = ByParts::new(&padded, self.h);
+    fn add_by_parts(&mut self, modes: Range<usize>, by_parts: &ByParts) {
         for (compliance, all) in self.compliances.iter_mut().zip(self.weights) {
             let mut weights = [0.0; LANES];
             weights[..modes.len()].copy_from_slice(&all[modes.clone()]);
-            compliance.add_by_parts(&by_parts, &weights);
+            compliance.add_by_parts(by_parts, &weights);
         }
-        by_parts
     }
 
     fn add_waiting(&mut self) {

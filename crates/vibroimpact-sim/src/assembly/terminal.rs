@@ -280,10 +280,9 @@ pub(crate) fn series_of(
                 for k in (0..psi.len()).step_by(LANES) {
                     let at = modes.start + k;
                     terms = basis.terms::<TAYLOR>(turning(system, at, modes.end) * reach, terms);
-                    let [drag, square, a, b] = [&system.drag, &system.square, amplitude, rate].map(
-                        #[inline(always)]
-                        |of: &[f64]| lanes(&of[..modes.end], at),
-                    );
+                    // one by one: what `map` returns is copied
+                    let (drag, square) = (lanes(&system.drag[..modes.end], at), lanes(&system.square[..modes.end], at));
+                    let (a, b) = (lanes(&amplitude[..modes.end], at), lanes(&rate[..modes.end], at));
                     let psi = lanes(psi, k);
                     let (mut here, mut next) = ([0.0; LANES], [0.0; LANES]);
                     for l in 0..LANES {

@@ -82,7 +82,11 @@ impl<'a> March<'a> {
         self.bounds(c);
         let motion = (self.amplitude.as_slice(), self.rate.as_slice());
         let Phase::Open { bounds: Some(bounds), .. } = &self.states[c].phase else { return };
-        let until = self.time_s + bounds.safe_time(link, (overlap, rate), bend, || self.noise(c), motion);
+        let safe = vectorized(
+            #[inline(always)]
+            || bounds.safe_time(link, (overlap, rate), bend, || self.noise(c), motion),
+        );
+        let until = self.time_s + safe;
         if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
             *clear_until = until;
         }
