@@ -87,6 +87,9 @@ enum Task {
     /// Test identification: random tables of synthetic measurements with noise
     #[command(disable_help_flag = true)]
     StudyIdentify(Passed),
+    /// Test derivatives: random impacts against differences of an independent solution in 32 digits
+    #[command(disable_help_flag = true)]
+    StudyDerivatives(Passed),
     /// Measure the gain of a control variate from derivatives over plain draws of uncertain fields
     #[command(disable_help_flag = true)]
     StudyControl(Passed),
@@ -127,6 +130,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::StudyAuto(passed) => package(root, "studies", Some("study-auto"), &passed),
         Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
         Task::StudyIdentify(passed) => package(root, "studies", Some("study-identify"), &passed),
+        Task::StudyDerivatives(passed) => package(root, "studies", Some("study-derivatives"), &passed),
         Task::StudyControl(passed) => package(root, "studies", Some("study-control"), &passed),
     }
 }

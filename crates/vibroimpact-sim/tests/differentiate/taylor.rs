@@ -17,6 +17,8 @@ use pulp::Arch;
 const DEGREE: usize = 40;
 /// Relative truncation error of a step.
 const PART: f64 = 1e-27;
+/// Partial sums over the modes.
+const LANES: usize = 8;
 /// Number of points of a step at which the event functions are evaluated.
 const PLACES: usize = 16;
 
@@ -231,7 +233,11 @@ impl Impact {
         while time.near < longest_s {
             let formula = self.formula(phase);
             let (xi, rate) = series.contact(self);
-            let entering = matches!(phase, Phase::Open) && (xi - touch).near >= 0.0 && rate.near > 0.0;
+            let open = matches!(phase, Phase::Open);
+            let entering = open && (xi - touch).near >= 0.0 && rate.near > 0.0;
+            if open && series.glide(self, (touch - xi).near, &mut time) {
+                continue;
+            }
             let met = if entering { Some(0) } else { series.step(self, &formula, phase, touch, &mut time) };
             let Some(which) = met else { continue };
             let (xi, _) = series.contact(self);
@@ -276,12 +282,17 @@ impl Row {
 }
 
 /// The series of a step: coefficients of order `i` of all amplitudes and all rates.
+#[derive(Clone)]
 struct Series {
     amplitude: Vec<Row>,
     rate: Vec<Row>,
     /// `-2 zeta omega`, `-omega^2`, `-psi`.
     factors: [Row; 3],
+    psi: Row,
     fastest: f64,
+    /// Free motion over the longest step, once it is needed: amplitude and rate at its end, after a unit amplitude and after a
+    /// unit rate.
+    free: Option<[[Row; 2]; 2]>,
     arch: Arch,
 }
 
@@ -297,19 +308,36 @@ impl Series {
                 row(&|k| -(impact.omega[k] * impact.omega[k])),
                 row(&|k| -impact.psi[k]),
             ],
+            psi: row(&|k| impact.psi[k]),
             fastest: impact.omega.iter().map(|omega| omega.near).fold(0.0, f64::max),
+            free: None,
             arch: Arch::new(),
         }
     }
 
     /// Compression and its rate.
     fn contact(&self, impact: &Impact) -> (Double, Double) {
-        (self.seen(impact, &self.amplitude[0]) - impact.gap, self.seen(impact, &self.rate[0]))
+        (self.seen(&self.amplitude[0]) - impact.gap, self.seen(&self.rate[0]))
     }
 
     /// The sum over the modes of their weights times these coefficients.
-    fn seen(&self, impact: &Impact, row: &Row) -> Double {
-        impact.psi.iter().enumerate().map(|(k, psi)| *psi * row.at(k)).sum()
+    fn seen(&self, row: &Row) -> Double {
+        let psi = &self.psi;
+        self.arch.dispatch(
+            #[inline(always)]
+            || {
+                let (mut near, mut rest) = ([0.0; LANES], [0.0; LANES]);
+                let n = row.near.len();
+                for first in (0..n - n % LANES).step_by(LANES) {
+                    for l in 0..LANES {
+                        let sum = Double { near: near[l], rest: rest[l] } + psi.at(first + l) * row.at(first + l);
+                        (near[l], rest[l]) = (sum.near, sum.rest);
+                    }
+                }
+                let last = (n - n % LANES..n).map(|k| psi.at(k) * row.at(k));
+                (0..LANES).map(|l| Double { near: near[l], rest: rest[l] }).chain(last).sum()
+            },
+        )
     }
 
     /// The coefficients of order `i + 1` from those of order `i` and the force's, in this unit of time.
@@ -349,6 +377,50 @@ impl Series {
         }
     }
 
+    /// The longest step for free motion (s).
+    fn longest_s(&self) -> f64 {
+        3.5 / self.fastest.max(1e-3)
+    }
+
+    /// Makes the longest step of free motion if the surfaces, which are this far apart, cannot touch within it: free motion from
+    /// `a` and `a'` displaces a mode by at most `min(omega h, 2) |a| + h |a'|`.
+    fn glide(&mut self, impact: &Impact, separation_m: f64, time: &mut Double) -> bool {
+        let h = self.longest_s();
+        let (a, b) = (&self.amplitude[0].near, &self.rate[0].near);
+        let moved =
+            |k: usize| impact.psi[k].near.abs() * ((impact.omega[k].near * h).min(2.0) * a[k].abs() + h * b[k].abs());
+        if separation_m <= 1.001 * (0..a.len()).map(moved).sum::<f64>() {
+            return false;
+        }
+        let free = self.free.take().unwrap_or_else(|| [(1.0, 0.0), (0.0, 1.0)].map(|start| self.free_motion(start)));
+        let [after_amplitude, after_rate] = &free;
+        let (arch, amplitude, rate) = (self.arch, &mut self.amplitude[0], &mut self.rate[0]);
+        arch.dispatch(
+            #[inline(always)]
+            || {
+                for k in 0..amplitude.near.len() {
+                    let (a, b) = (amplitude.at(k), rate.at(k));
+                    amplitude.set(k, after_amplitude[0].at(k) * a + after_rate[0].at(k) * b);
+                    rate.set(k, after_amplitude[1].at(k) * a + after_rate[1].at(k) * b);
+                }
+            },
+        );
+        self.free = Some(free);
+        *time = *time + number(h);
+        true
+    }
+
+    /// Amplitude and rate of every mode after the longest step, from these.
+    fn free_motion(&self, (amplitude, rate): (f64, f64)) -> [Row; 2] {
+        let (mut series, n) = (self.clone(), self.amplitude[0].near.len());
+        series.amplitude[0] = Row::new(n, |_| number(amplitude));
+        series.rate[0] = Row::new(n, |_| number(rate));
+        let unit_s = 1.0 / self.fastest.max(1e-3);
+        (0..DEGREE).for_each(|i| series.raise(i, unit_s, number(0.0)));
+        series.move_to(number(self.longest_s()) / number(unit_s));
+        [series.amplitude.swap_remove(0), series.rate.swap_remove(0)]
+    }
+
     /// One step, up to the first event in it, if there is one; returns its number.
     fn step(
         &mut self,
@@ -366,11 +438,11 @@ impl Series {
         // Coefficients in the time scale on which the compression changes do not overflow.
         let own_s = ((xi_m - formula.anchor).near / rate_m_s.near).abs();
         let unit_s = if formula.has_power() && own_s > 0.0 { own_s.min(fastest_s) } else { fastest_s };
-        let mut longest = 3.5 * fastest_s / unit_s;
+        let mut longest = self.longest_s() / unit_s;
         let mut has_power = formula.has_power();
         for i in 0..=DEGREE {
-            xi[i] = self.seen(impact, &self.amplitude[i]) - if i == 0 { impact.gap } else { Double::default() };
-            rate[i] = self.seen(impact, &self.rate[i]);
+            xi[i] = self.seen(&self.amplitude[i]) - if i == 0 { impact.gap } else { Double::default() };
+            rate[i] = self.seen(&self.rate[i]);
             force[i] = formula.per_xi * xi[i] + formula.per_rate * rate[i];
             if i == 0 {
                 force[0] = force[0] + formula.constant;
@@ -407,7 +479,8 @@ impl Series {
                 if i == 0 {
                     g[0] = g[0] + formula.power;
                 }
-                force[i] = force[i] + (0..=i).map(|j| p[j] * g[i - j]).sum::<Double>();
+                let is_constant = formula.power_rate.near == 0.0 && formula.excess.near == 0.0;
+                force[i] = force[i] + if is_constant { p[i] * g[0] } else { (0..=i).map(|j| p[j] * g[i - j]).sum() };
             }
             if i < DEGREE {
                 self.raise(i, unit_s, force[i]);
