@@ -15,6 +15,9 @@ const FIRST_CONTACTS: &str = include_str!("../../../crates/vibroimpact-sim/tests
 const STORY_END: f64 = 200.0;
 
 /// Duration and rebound ratio of the first contact, from the finer of the table's two resolutions.
+///
+/// # Errors
+/// An `s` that the table does not contain.
 pub fn first_contact(s: f64) -> Result<(f64, f64), String> {
     let rows = FIRST_CONTACTS.lines().skip(1).filter_map(|line| {
         let cells: Vec<f64> = line.split(',').filter_map(|cell| cell.parse().ok()).collect();

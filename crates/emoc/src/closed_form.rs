@@ -78,7 +78,9 @@ impl<T: Real> Rebound<T> {
     /// Writes the modal speeds after the impact, `a_k' = -phi_k y u / sum phi^2` (kg^1/2 m/s), for mode
     /// shapes `phi` (kg^-1/2) at the contact and a speed of approach `speed_m_s`.
     ///
-    /// An error if the lists differ in length or a number is not finite.
+    /// # Errors
+    /// [`InvalidInput`] for lists of different length, a speed that is negative or not finite, or a mode shape that is not
+    /// finite or makes the sum of squares overflow.
     pub fn modal_rates(&self, speed_m_s: T, phi: &[T], rates: &mut [T]) -> Result<(), InvalidInput> {
         require_non_negative("speed_m_s", speed_m_s)?;
         require(phi.len() == rates.len(), ["rates", "len()"], T::from_count(rates.len()), "the number of mode shapes")?;
@@ -109,6 +111,9 @@ pub struct CoefficientGradient<T = f64> {
 
 impl<T: Real> Coefficients<T> {
     /// Checks the ranges: `0 <= ebar <= 1`, `beta_0 >= 0`, `0 <= beta_1 <= 1`.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] names the first number out of range.
     #[inline]
     pub fn validate(&self) -> Result<(), InvalidInput> {
         require_fraction("ebar", self.ebar)?;
@@ -128,6 +133,9 @@ impl<T: Real> Coefficients<T> {
     /// assert!((rebound.restitution - 0.9 * 0.75 / 1.5).abs() < 1e-15);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a coefficient out of range, or a `z` that is negative or not finite.
     #[inline]
     pub fn rebound(&self, z: T) -> Result<Rebound<T>, InvalidInput> {
         self.validate()?;
@@ -159,6 +167,9 @@ impl<T: Real> Coefficients<T> {
     /// assert_eq!(gradient.per_z, -0.25);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// As [`Coefficients::rebound`].
     #[inline]
     pub fn rebound_with_gradient(&self, z: T) -> Result<(Rebound<T>, CoefficientGradient<T>), InvalidInput> {
         let rebound = self.rebound(z)?;

@@ -62,6 +62,10 @@ impl Solver {
     ///
     /// The energy does not grow and no contact closes afterwards, for any coefficients: if the demanded rebound cannot be
     /// reached, all demands are lowered together ([`Outcome::Relaxed`]).
+    ///
+    /// # Errors
+    /// [`SolveError::Invalid`] as [`Problem::validate`], and [`SolveError::Stopped`] if the quadratic program of the least
+    /// energy cannot be solved in double precision.
     pub fn solve(&mut self, problem: &Problem) -> Result<Solution, SolveError> {
         problem.validate()?;
         let Some(scaled) = Scaled::new(problem)? else { return Ok(unchanged(problem)) };
@@ -87,6 +91,9 @@ impl Solver {
 
     /// Todorov's impact (thesis 5.3): the minimum of the kinetic energy over impulses within the friction cones, where the
     /// modes take up the impulse instantaneously. No rebound is demanded, and without friction there is none.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
     pub fn least_energy(&mut self, problem: &Problem) -> Result<Solution, SolveError> {
         problem.validate()?;
         let Some(scaled) = Scaled::new(problem)? else { return Ok(unchanged(problem)) };

@@ -39,6 +39,9 @@ impl core::fmt::Display for Lcp {
 /// assert!((z[0] - 4.0 / 3.0).abs() < 1e-14 && (z[1] - 7.0 / 3.0).abs() < 1e-14);
 /// # Ok::<(), emoc::InvalidInput>(())
 /// ```
+///
+/// # Errors
+/// [`InvalidInput`] for a matrix whose size does not fit `q`, or a number beyond 1e100 in magnitude.
 pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
     let n = q.len();
     require_finite("q", q, n)?;
@@ -55,6 +58,9 @@ pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
 ///
 /// With unequal `ebar` the energy can grow; [`Solution::energy_change_j`] shows it. `Ok(None)` if the demands
 /// contradict each other, as between two walls.
+///
+/// # Errors
+/// [`InvalidInput`] as [`Problem::validate`].
 pub fn newton_impact(problem: &Problem) -> Result<Option<Solution>, InvalidInput> {
     problem.validate()?;
     let (d, normals) = (problem.coordinates(), problem.normals());

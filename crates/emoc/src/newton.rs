@@ -16,6 +16,9 @@ use invalid_input::InvalidInput;
 /// assert_eq!(emoc::newton_restitution(1.0, 3.0)?, -0.5);
 /// # Ok::<(), emoc::InvalidInput>(())
 /// ```
+///
+/// # Errors
+/// [`InvalidInput`] for a restitution outside 0 to 1, or a `z` that is negative or not finite.
 pub fn newton_restitution<T: Real>(restitution: T, z: T) -> Result<T, InvalidInput> {
     require_fraction("restitution", restitution)?;
     require_non_negative("z", z)?;

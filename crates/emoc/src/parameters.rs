@@ -20,7 +20,10 @@ pub struct Site<T = f64> {
 
 impl<T: Real> Site<T> {
     /// From mass-normalised mode shapes `phi_k(b)` (kg^-1/2), lowest mode first. Signs do not matter. Without modes the
-    /// structure is rigid and immovable. An error if a shape is not finite.
+    /// structure is rigid and immovable.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a shape that is not finite or makes the sum of squares overflow.
     pub fn new(phi: &[T]) -> Result<Site<T>, InvalidInput> {
         let first = phi.first().map_or(T::ZERO, |&phi_1| phi_1 * phi_1);
         Ok(Site { sum_phi_squared_per_kg: sum_of_squares(phi)?, first_phi_squared_per_kg: first, modes: phi.len() })
@@ -43,7 +46,10 @@ pub struct Impact<T = f64> {
 }
 
 impl<T: Real> Impact<T> {
-    /// A striker of mass `mass_kg` (finite, greater than 0) at `site`. An error if `Z` overflows.
+    /// A striker of mass `mass_kg` (finite, greater than 0) at `site`.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a mass that is not positive and finite, or if `Z` overflows.
     #[inline]
     pub fn new(mass_kg: T, site: &Site<T>) -> Result<Impact<T>, InvalidInput> {
         require_positive("mass_kg", mass_kg)?;
@@ -108,6 +114,10 @@ pub struct ParameterGradient<T = f64> {
 
 impl<T: Real> Parameters<T> {
     /// Checks the ranges of the four numbers.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for `mu_0`, `alpha_0` or `alpha_1` that is negative or not finite, or a notional restitution outside 0
+    /// to 1.
     #[inline]
     pub fn validate(&self) -> Result<(), InvalidInput> {
         require_non_negative("mu0", self.mu0)?;
@@ -126,6 +136,9 @@ impl<T: Real> Parameters<T> {
     /// assert!((coefficients.beta0 - 1.0 / 3.0).abs() < 1e-15);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as [`Parameters::validate`], and for an impact whose numbers are out of range.
     #[inline]
     pub fn coefficients(&self, impact: &Impact<T>) -> Result<Coefficients<T>, InvalidInput> {
         self.validate()?;
@@ -146,6 +159,9 @@ impl<T: Real> Parameters<T> {
     /// assert!(rebound.restitution > 0.0 && rebound.restitution <= 1.0);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// As [`Parameters::coefficients`].
     #[inline]
     pub fn rebound(&self, impact: &Impact<T>) -> Result<Rebound<T>, InvalidInput> {
         Ok(self.coefficients(impact)?.rebound_unchecked(impact.z))
@@ -160,6 +176,9 @@ impl<T: Real> Parameters<T> {
     /// assert!((gradient.per_notional_restitution - rebound.restitution).abs() < 1e-15);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// As [`Parameters::coefficients`].
     #[inline]
     pub fn rebound_with_gradient(
         &self,

@@ -95,8 +95,9 @@ impl Problem {
     /// The problem of bodies with `n` velocities, an `n` by `n` mass matrix, and the Jacobian (one row of `n` per contact
     /// coordinate) that maps those velocities to contact velocities: `W = J M^-1 J^T`.
     ///
-    /// Returns an error if the mass matrix is not symmetric and positive definite, a size does not match, or a number is not
-    /// finite.
+    /// # Errors
+    /// [`InvalidInput`] for a mass matrix that is not symmetric and positive definite, a size that does not match, or a number
+    /// beyond 1e100 in magnitude; and as [`Problem::validate`].
     pub fn from_bodies(
         contacts: Vec<Contact>,
         mass_matrix: &[f64],
@@ -145,6 +146,9 @@ impl Problem {
 
     /// Checks sizes, ranges, that `W` is symmetric and positive semidefinite, and that the velocities are in its range;
     /// otherwise an immovable body would move, with infinite energy.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] names the first number, list or matrix that fails a check.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         for (index, contact) in self.contacts.iter().enumerate() {
             let within = |error: InvalidInput| error.at(index).within("contacts");

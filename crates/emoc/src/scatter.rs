@@ -58,6 +58,9 @@ impl ScatteredLaw {
     };
 
     /// Checks the ranges of all parameters.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] names the first number out of range.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         self.law.validate()?;
         require_positive("single", self.single)?;
@@ -78,6 +81,9 @@ impl ScatteredLaw {
     /// assert!(low < restitution && restitution < high);
     /// # Ok::<(), emoc::InvalidInput>(())
     /// ```
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as [`ScatteredLaw::validate`], and for an impact whose numbers are out of range.
     pub fn rebound(&self, impact: &Impact) -> Result<Scatter, InvalidInput> {
         self.validate()?;
         let notional_restitution = self.law.notional_restitution;
@@ -94,6 +100,9 @@ impl ScatteredLaw {
 impl Scatter {
     /// The restitution for a number that is uniform from 0 to 1, ends included: equation (2). It increases with the number, so
     /// that `draw(0.5)` is the median and `draw(p)` the quantile at `p`.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a number outside 0 to 1.
     pub fn draw(&self, uniform: f64) -> Result<f64, InvalidInput> {
         require_fraction("uniform", uniform)?;
         let against = libm::pow((1.0 - uniform) / uniform, self.scale);
@@ -108,12 +117,18 @@ impl Scatter {
     }
 
     /// The central interval that contains the restitution with probability `level`.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a `level` outside 0 to 1.
     pub fn interval(&self, level: f64) -> Result<[f64; 2], InvalidInput> {
         require_fraction("level", level)?;
         Ok([self.draw(0.5 * (1.0 - level))?, self.draw(0.5 * (1.0 + level))?])
     }
 
     /// The probability of a restitution of at most `restitution`: equation (1).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a restitution that is not finite.
     pub fn probability_below(&self, restitution: f64) -> Result<f64, InvalidInput> {
         require(restitution.is_finite(), "restitution", restitution, "a finite number")?;
         let x = restitution / self.notional_restitution;

@@ -37,6 +37,10 @@ impl SingleImpact<'_> {
     ///
     /// Modes that the contact does not excite (`phi_k = 0`) stay at rest and are omitted; with them the feasible set would have
     /// no interior.
+    ///
+    /// # Errors
+    /// [`SolveError::Invalid`] for a number out of range, [`SolveError::Stopped`] if the program cannot be solved in double
+    /// precision.
     pub fn solve_full(&self) -> Result<SingleSolution, SolveError> {
         let z = self.moderated_mass_ratio()?;
         let Coefficients { ebar, beta0, beta1 } = self.coefficients;
@@ -73,6 +77,9 @@ impl SingleImpact<'_> {
     /// Solves the reduced form with Clarabel: the two variables `e = v_f/u` and `y = -sum phi_k a_k'/u`,
     ///
     /// `min e^2 + y^2/Z`, `e + y >= ebar`, `e - beta_0 y >= beta_1 ebar`, `0 <= y <= Z (1 + e)`.
+    ///
+    /// # Errors
+    /// As [`SingleImpact::solve_full`].
     pub fn solve_reduced(&self) -> Result<SingleSolution, SolveError> {
         let z = self.moderated_mass_ratio()?;
         let Coefficients { ebar, beta0, beta1 } = self.coefficients;

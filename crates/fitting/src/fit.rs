@@ -28,6 +28,10 @@ use crate::{gradient_method, simplex};
 /// assert!((found.parameters[1] - 0.5).abs() < 0.01 && found.report.rms < 0.01);
 /// # Ok::<(), fitting::FitError>(())
 /// ```
+///
+/// # Errors
+/// [`FitError::Invalid`] as [`Problem::validate`] and [`Settings::validate`]; [`FitError::NonFiniteModel`] if the model is not
+/// finite at any starting point.
 pub fn fit(problem: &Problem, settings: &Settings) -> Result<Fit, FitError> {
     problem.validate()?;
     settings.validate()?;

@@ -30,6 +30,9 @@ impl Fit {
     /// [`cross_validate`](crate::cross_validate).
     ///
     /// `Ok(None)` if the residuals do not determine the parameters (singular `J^T J`, or `m = n`).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a `level` outside 0.01 to 0.9999.
     pub fn intervals(&self, level: f64) -> Result<Option<Vec<Interval>>, InvalidInput> {
         require_level(level)?;
         let n = self.parameters.len();
@@ -55,6 +58,11 @@ impl Fit {
 /// the fit. The residuals must be independent; they need not be normal, nor the model linear.
 ///
 /// The same `seed` gives the same result to the last bit. Refits whose model is not finite are omitted.
+///
+/// # Errors
+/// [`FitError::Invalid`] for a problem or settings out of range, a `level` outside 0.01 to 0.9999, fewer than 20 or more than
+/// 1,000,000 `resamples`, or a fit of another number of parameters; [`FitError::NonFiniteModel`] if no refit has a finite
+/// model.
 pub fn bootstrap(
     problem: &Problem,
     settings: &Settings,

@@ -52,6 +52,9 @@ impl Parameter {
     }
 
     /// Checks that the numbers are finite and that the start and the search interval are within the range.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] names the parameter and the part of it that is out of range.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let field = |part: &str| format!("parameter {} {part}", self.name);
         if let Range::Between { low, high } = self.range

@@ -145,6 +145,10 @@ pub struct Fit {
 
 impl Problem<'_> {
     /// Checks the parameters and the number of residuals.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for no parameter or more than 100, fewer residuals than parameters, or a parameter that
+    /// [`Parameter::validate`] rejects.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let n = self.parameters.len();
         if n == 0 || n > 100 {
@@ -159,6 +163,9 @@ impl Problem<'_> {
 
 impl Settings {
     /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] names the first setting out of range.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         if !(1e-15..=0.1).contains(&self.tolerance) {
             return Err(InvalidInput::new("tolerance", self.tolerance, "a number from 1e-15 to 0.1"));

@@ -40,7 +40,8 @@ pub struct CrossValidation {
 /// Labels for `folds`-fold cross-validation: `count` residuals are distributed at random over groups whose sizes differ by at
 /// most one. The same `seed` gives the same labels.
 ///
-/// Returns an error unless `2 <= folds <= count`.
+/// # Errors
+/// [`InvalidInput`] unless `2 <= folds <= count`.
 pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, InvalidInput> {
     if folds < 2 || folds > count {
         return Err(InvalidInput::new("folds", folds, "a number from 2 to the number of residuals"));
@@ -67,6 +68,11 @@ pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, Inva
 /// assert!(result.folds[0].predicted.rms > 3.9 && result.folds[0].fitted.rms < 0.1);
 /// # Ok::<(), fitting::FitError>(())
 /// ```
+///
+/// # Errors
+/// [`FitError::Invalid`] for a problem or settings out of range, labels that are not one for each residual, fewer than two
+/// different labels, or a group without which there are fewer residuals than parameters; and as [`fit`](crate::fit) for each
+/// fit.
 pub fn cross_validate(problem: &Problem, settings: &Settings, labels: &[usize]) -> Result<CrossValidation, FitError> {
     problem.validate()?;
     settings.validate()?;

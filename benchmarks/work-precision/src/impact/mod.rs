@@ -67,6 +67,9 @@ fn modes_and_remainder(beam: &Beam, kept: usize, damping_ratio: f64, x_m: f64) -
 }
 
 /// Every impact of the library (thesis sections 3.3 and 4.2; steps and balls of chapter 4 as in `datasets`).
+///
+/// # Errors
+/// A beam or a law that the crates reject.
 pub fn library() -> Result<Vec<Impact>, String> {
     let text = |error: contact_models::InvalidInput| error.to_string();
     let hertz = |k: f64| Hertz::new(k).map(Law::from).map_err(text);
@@ -177,6 +180,9 @@ pub fn library() -> Result<Vec<Impact>, String> {
 }
 
 /// Every solver on one impact.
+///
+/// # Errors
+/// An impact without a reference.
 pub fn rows(impact: &Impact, effort: &Effort) -> Result<Vec<Row>, String> {
     let reference = reference(impact.name)?;
     let judge = |outcome: Outcome, cost: u64| Found { cost, errors: outcome.errors(&reference.outcome) };

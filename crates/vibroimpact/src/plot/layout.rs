@@ -228,6 +228,9 @@ fn draw_panel(canvas: &Canvas, plan: &Plan, r: &Rectangle) -> io::Result<()> {
 
 impl Figure {
     /// The picture as an SVG document.
+    ///
+    /// # Errors
+    /// Those of the SVG backend.
     pub fn svg(&self) -> io::Result<String> {
         draw(self)
     }

@@ -71,6 +71,9 @@ impl Report {
     }
 
     /// Adds a figure under a file name without extension, with a caption in Markdown.
+    ///
+    /// # Errors
+    /// Those of [`Figure::svg`](crate::plot::Figure::svg).
     pub fn figure(&mut self, name: &str, figure: &Figure, caption: &str) -> io::Result<()> {
         let path = format!("figures/{}.svg", file_name(name));
         self.figures.insert(path.clone(), figure.svg()?);
@@ -120,6 +123,9 @@ impl Report {
 
     /// Writes `report.md`, `report.html` and the figures into a folder, and gives their paths.
     /// Each file appears whole or not at all.
+    ///
+    /// # Errors
+    /// A folder or file that cannot be written.
     pub fn write(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
         let documents = [("report.md".to_string(), self.markdown()), ("report.html".to_string(), self.html())];
         let figures = self.figures.iter().map(|(name, svg)| (name.clone(), svg.clone()));
@@ -134,6 +140,9 @@ impl Report {
 }
 
 /// Writes a file under a temporary name and then renames it, so that it is never incomplete. Missing folders are created.
+///
+/// # Errors
+/// A path without a file name, or a folder or file that cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
