@@ -9,7 +9,7 @@ class InvalidInput(ValueError):
     """Input that cannot be used; the text is that of the command line.
 
     ``field`` is the path of the field, as in ``structure.segments[0].length_m``; ``value`` is its value as
-    JSON text, or ``None`` if the field is missing; ``allowed`` states what would be allowed.
+    JSON text, or ``None`` if the field is missing; ``allowed`` completes the sentence "it must be ...".
     """
 
     field: str

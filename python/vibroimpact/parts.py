@@ -378,7 +378,7 @@ class DroppedRod(Part):
 
     ``length_m``: Length (m).
     ``diameter_m``: Diameter (m); the ends are hemispheres of half of it in radius.
-    ``inclination_deg``: Angle between rod and floor (degrees): 0 lies, 90 stands upright.
+    ``inclination_deg``: Angle between rod and floor (degrees): 0 for a lying rod, 90 for an upright one.
     ``axial_modes``: Number of axial modes; 20 when left out.
     ``bending_modes``: Number of bending modes; 40 when left out.
     ``damping_ratio``: Damping ratio of the elastic modes; 0 when left out.
@@ -469,7 +469,7 @@ class Viscous(Part):
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Hysteretic(Part):
     """The thesis's rate-independent dissipation. A stiffness from materials is divided by ``1 + theta_m + beta``, so that
-    first loading follows Hertz (thesis 3.3.4); ``stiffness_n_m1_5`` is taken as it stands.
+    first loading follows Hertz (thesis 3.3.4); ``stiffness_n_m1_5`` is used unchanged.
 
     ``theta_m``: Centre of the internal variable.
     ``beta``: Half width of the internal variable's range.

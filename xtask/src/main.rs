@@ -47,7 +47,7 @@ enum Task {
         /// The chapter: 2 to 8; `ensemble` for chapter 4 with varied unstated parameters; `theories` for chapters 3, 4 and 7
         /// by Timoshenko's theory; `all` for the whole thesis in one report
         chapter: Chapters,
-        /// Fewer points through the same code
+        /// Compute fewer points, with the same code
         #[arg(long)]
         quick: bool,
         /// The folder to write to [default: out/chapter-N or out/all]
@@ -69,7 +69,7 @@ enum Task {
     /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
     #[command(disable_help_flag = true)]
     WorkPrecision(Passed),
-    /// Run the benchmark of impact for the codes in Rust, and write docs/impactbench.md from the results of all codes
+    /// Run impactbench for the codes in Rust, and write docs/impactbench.md from the results of all codes
     #[command(disable_help_flag = true)]
     Impactbench(Passed),
     /// Test the automatic choice of the model: random scenes against a far more accurate reference
@@ -77,7 +77,7 @@ enum Task {
     StudyAuto(Passed),
     /// Fit the scatter of the law of energy minimisation, and test its intervals on beams left out
     StudyScatter {
-        /// Fewer points through the same code
+        /// Compute fewer points, with the same code
         #[arg(long)]
         quick: bool,
         /// The folder to write to

@@ -137,7 +137,7 @@ fn applied(back: &Back, c: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|j| back[i][j] * c[j]).sum())
 }
 
-/// The attachments at a node: the frame behind it, for an unscaled frame.
+/// Passes the attachments at a node: the frame after it, for an unscaled frame.
 fn passed(node: &Node, x: f64, frame: &Frame, acceleration: Option<Acceleration>) -> (Frame, Back) {
     let [u, v, t] = frame;
     let loaded = [loaded(node, x, u, None), loaded(node, x, v, None), loaded(node, x, t, acceleration)];

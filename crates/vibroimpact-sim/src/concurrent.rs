@@ -21,7 +21,7 @@ pub fn both<A: Send, B>(concurrent: bool, beside: impl Fn() -> A + Sync, here: i
         match thread.map(|thread| thread.join()) {
             Ok(Ok(found)) => (found, here),
             Ok(Err(panic)) => resume_unwind(panic),
-            // no thread to be had
+            // the system has given no thread
             Err(_) => (beside(), here),
         }
     })

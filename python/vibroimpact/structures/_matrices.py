@@ -41,7 +41,7 @@ def from_matrices(
     ``points`` gives, for each point that may be struck, its degree of freedom (from 0) or a vector of weights over all
     of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those to be computed. The default is slightly negative, so that
     the matrix of a structure that moves freely can be factorised. ``rounding`` is the relative rounding of the entries of the
-    stiffness matrix, which tells rigid-body modes from elastic ones: 1e-7 for a file with seven digits.
+    stiffness matrix, which distinguishes rigid-body modes from elastic ones: 1e-7 for a file with seven digits.
     """
     from scipy.sparse import bmat, csc_array
     from scipy.sparse.linalg import eigsh, splu

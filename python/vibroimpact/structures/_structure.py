@@ -168,7 +168,7 @@ def frequencies(path: str | PathLike[str], eigenvalues: Floats, supported: bool 
     """Angular frequencies from the eigenvalues that a program has written; those of rigid-body modes are 0.
 
     A program writes the eigenvalue of a rigid-body mode with its rounding, of either sign. How large that is depends on the mesh,
-    which is not known here, so that only a gap tells it from an elastic mode. A structure that is known to be ``supported`` has no
+    which is not known here, so that only a gap distinguishes it from an elastic mode. A structure that is known to be ``supported`` has no
     rigid-body modes.
     """
     values = np.array(eigenvalues, dtype=np.float64)

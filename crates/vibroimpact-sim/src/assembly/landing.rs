@@ -131,7 +131,7 @@ impl<'a> March<'a> {
                     let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
                     let within = |x: &f64| *x > low && *x < high;
                     match [newton, secant, 0.5 * (low + high)].into_iter().find(within) {
-                        // the further motion does not depend on these last digits of the end of the branch
+                        // the motion after the event does not depend on these last digits of the time
                         Some(next) if (next - length).abs() > 1e-13 * high => next,
                         _ => return Some(landed),
                     }

@@ -140,7 +140,7 @@ impl<'a> March<'a> {
         if let Judgement::Meets(target, place) = judgement
             && place > 0.0
         {
-            // it is located once it is near
+            // the event is located once it is near
             self.counts.rejected_steps += 1;
             self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
             return;

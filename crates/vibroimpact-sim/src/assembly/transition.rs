@@ -120,7 +120,7 @@ impl<'a> March<'a> {
         state.phase = Phase::Closed(Box::new(touch));
         state.momentum = state.momentum.max(momentum);
         if state.momentum == 0.0 && inverse > 0.0 {
-            // the momentum that it will transmit comes from the others
+            // it has no speed of its own: the other contacts set the momentum that it will transmit
             let speed = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
             self.states[c].momentum = speed / inverse;
         }
@@ -142,7 +142,7 @@ impl<'a> March<'a> {
         if let Phase::Closed(touch) = phase {
             touch.branch = branch;
             touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
-            // until the first panel shows the opposite
+            // assumed until the first panel shows the opposite
             touch.force_by_rate = true;
         }
         self.forget_horizons();

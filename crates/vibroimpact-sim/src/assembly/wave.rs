@@ -71,7 +71,7 @@ pub(crate) fn spherical_bessel(y: f64) -> Nodal {
         sum
     };
     if y.abs() < 1e-2 {
-        // too small to be divided by
+        // a division by y would magnify rounding
         let mut power = 1.0;
         for n in 0..Q {
             bessel[n] = power * series(n);

@@ -86,7 +86,7 @@ impl Equations {
             }
             let inverse = 1.0 / pivot;
             self.pivots.push(inverse);
-            // what is right of the pivot, behind zeros up to a whole block
+            // the row right of the pivot, with zeros before it that fill a whole block
             let from = (k + 1) / BLOCK * BLOCK;
             let mut row = [0.0; *NODES.end()];
             row[k + 1..p].copy_from_slice(&head[k * width + k + 1..k * width + p]);

@@ -405,8 +405,8 @@ impl<'a> March<'a> {
     fn as_impulses(&self, panel: &Panel, p: f64) -> Vec<Impulse> {
         let behind = p - panel.start - panel.h;
         let rule = self.tables.rule(panel.kind);
-        // pairs (remaining fraction, weight); nodes close to the panel's end where the next panel
-        // is much shorter, so that the impulses stand for the panel right from the present on
+        // pairs (remaining fraction, weight); where the next panel is much shorter, nodes are close to the panel's end, so that
+        // the impulses represent the panel from the present on
         let points: Vec<(f64, f64)> = match panel.kind {
             Kind::Start => (0..self.tables.p).map(|j| (rule.remaining[j], rule.mass[j] * panel.f[j])).collect(),
             Kind::End => {

@@ -32,9 +32,9 @@ impl Departure {
             let bend = self.free.bend(tau);
             (self.rate + tau * bend, self.free.rate_gain(tau) / tau - bend)
         };
-        // q is concave in tau: Newton from the left never passes the root. In y = tau^(-1/2) it is
-        // convex and decreasing: Newton from y = u / total (a time not before the root) neither.
-        // The two sequences enclose the root.
+        // q is concave in tau, so Newton's method from the left never passes the root. In y = tau^(-1/2) it is convex and
+        // decreasing, so Newton's method from y = u / total, a time not before the root, does not pass it either. The two
+        // sequences enclose the root.
         let (mut early, mut late) = (-self.rate / self.free.bend(0.0), (total / self.body).powi(2));
         for _ in 0..200 {
             let (value, slope) = q(early);
@@ -48,8 +48,8 @@ impl Departure {
                 break;
             }
         }
-        // one end may have come to rest on the root first: the end with the smaller value is next
-        // to it, and Newton's method finishes from there
+        // one of the sequences may have reached the root first: the end with the smaller value is next to it, and Newton's
+        // method finishes from there
         let mut tau = if q(early).0.abs() < q(late).0.abs() { early } else { late };
         for _ in 0..4 {
             let (value, slope) = q(tau);
@@ -59,7 +59,7 @@ impl Departure {
         if tau > 0.0 && closing > 0.0 && tau.is_finite() {
             Some((tau, closing))
         } else {
-            // so slow a body that rounding hides the root: the past is one impulse, x = u t - I sqrt(t)
+            // the body is so slow that rounding exceeds q near the root: the past then acts as one impulse, x = u t - I sqrt(t)
             Some(((total / self.body).powi(2), 0.5 * self.body))
         }
     }

@@ -123,7 +123,7 @@ fn locate(low: (f64, f64), high: (f64, f64), f: &dyn Fn(f64, &Settings) -> f64) 
     let mut slope = (high.1 - low.1) / (high.0 - low.0);
     for round in 0..100 {
         let secant = here.0 - here.1 / slope;
-        // rounding errors of the function are worth 1e-14 of S and less
+        // rounding errors of the function change S by at most 1e-14 of its value
         if here.1 == 0.0 || (secant - here.0).abs() <= 1e-14 * b {
             break;
         }
@@ -137,7 +137,7 @@ fn locate(low: (f64, f64), high: (f64, f64), f: &dyn Fn(f64, &Settings) -> f64) 
         } else {
             b = next;
         }
-        // differences of rounding errors are no slope
+        // a difference that consists of rounding errors gives no slope
         let secant_slope = (here.1 - last.1) / (here.0 - last.0);
         if (here.0 - last.0).abs() > 1e-9 * b && secant_slope > 0.0 {
             slope = secant_slope;

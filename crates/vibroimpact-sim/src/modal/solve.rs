@@ -416,7 +416,7 @@ impl Solver {
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_excited());
         let ratio = (run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k])) / before;
-        // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
+        // the ratio to an approach of 1e-310 m/s overflows on a structure that moves
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
     }
 

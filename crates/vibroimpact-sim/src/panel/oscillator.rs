@@ -146,7 +146,7 @@ pub(crate) fn exponential_moments(z: Complex64) -> [Complex64; Q] {
         };
         let scale = w.exp();
         if size < 1e-2 {
-            // too small to be divided by
+            // a division by w would magnify rounding
             let mut power = scale;
             for n in 0..Q {
                 moments[n] = power * series(n);
@@ -229,7 +229,7 @@ mod tests {
             for t in [1e-3, 1e-6, 1e-9f64] {
                 let series = 1.0 - 2.0 * zeta * t / 3.0 + (4.0 * zeta * zeta - 1.0) * t * t / 12.0;
                 let moved = propagate(&mode(1.0, zeta), t).p11_less_1;
-                // against what the damping does, which cancels
+                // the effect of damping cancels to first order, and leaves its rounding
                 let floor = 4.0 * f64::EPSILON * (t * t + zeta * t) + 1e2 * (1.0 + zeta).powi(3) * t.powi(5);
                 assert!((moved + 0.5 * t * t * series).abs() < floor, "{zeta} {t}: {moved:e}");
             }

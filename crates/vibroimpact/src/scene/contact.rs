@@ -35,7 +35,7 @@ pub enum Contact {
     },
     /// `"hysteretic"`: the thesis's rate-independent dissipation, [`contact_models::Hysteretic`]. A stiffness from
     /// materials is divided by `1 + theta_m + beta`, so that first loading follows Hertz (thesis 3.3.4);
-    /// `stiffness_n_m1_5` is taken as it stands.
+    /// `stiffness_n_m1_5` is used unchanged.
     Hysteretic {
         /// The elastic part.
         #[serde(flatten)]

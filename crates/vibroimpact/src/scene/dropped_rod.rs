@@ -29,7 +29,7 @@ pub struct DroppedRod {
     pub density_kg_m3: f64,
     /// Poisson's ratio.
     pub poissons_ratio: f64,
-    /// Angle between rod and floor (degrees): 0 lies, 90 stands upright.
+    /// Angle between rod and floor (degrees): 0 for a lying rod, 90 for an upright one.
     pub inclination_deg: f64,
     /// Damping ratio of the elastic modes; 0 when left out.
     #[serde(default)]

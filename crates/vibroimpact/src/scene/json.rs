@@ -102,7 +102,7 @@ fn syntax_error(text: &str, what: &str, field: Path, fault: &serde_json::Error) 
     }
     let (line, column) = (fault.line(), fault.column());
     let told = fault.to_string();
-    // the place is told beside the reason
+    // the error states line and column separately
     let told = told.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&told);
     let reason = if fault.is_eof() {
         format!("the text ends too early ({told}); {what} is one complete JSON object")
@@ -169,18 +169,18 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput
     read_beside(value, &[])
 }
 
-/// As [`read`], of an object whose fields are read in two parts: a field that is unknown is told of those of the other part,
-/// too.
+/// As [`read`], for an object whose fields are read in two parts: the message about an unknown field also lists the fields of
+/// the other part.
 pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -> Result<T, InvalidInput> {
     read_told(value, beside, fields::allowed_at)
 }
 
-/// As [`read`]; a fault of the whole is told of `what`.
+/// As [`read`]; an error of the whole object refers to it as `what`.
 pub(crate) fn read_whole<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, InvalidInput> {
     of_whole(read(value), what)
 }
 
-/// As [`read_whole`], of a file whose fields are not those of a scene: `allowed_at` tells what a field may hold.
+/// As [`read_whole`], for a file whose fields are not those of a scene: `allowed_at` gives the allowed values of a field.
 pub(crate) fn read_other<T: DeserializeOwned>(
     value: &Value,
     what: &str,
@@ -198,7 +198,7 @@ fn read_told<T: DeserializeOwned>(
     beside: &[&str],
     allowed_at: impl Fn(&Path) -> Option<&'static str>,
 ) -> Result<T, InvalidInput> {
-    // to follow the path costs as much again as to read, and only a fault needs it
+    // following the path doubles the cost of reading, and only an error needs it
     if let Ok(Object(inner)) = Object::deserialize(value) {
         return Ok(inner);
     }
@@ -249,7 +249,7 @@ pub(crate) fn found(field: impl Into<Path>, value: Option<&Value>, allowed: impl
     }
 }
 
-/// Takes the entry `tag`, which names the kind of an object, out of the object; the rest is what the kind holds.
+/// Takes the entry `tag`, which names the kind of an object, out of the object; the rest are the fields of this kind.
 pub(crate) fn split_tag<'k>(
     value: &Value,
     tag: &str,

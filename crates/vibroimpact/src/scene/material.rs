@@ -2,7 +2,7 @@
 //!
 //! An object of a scene that takes numbers of a material may name one instead: `"material": "steel"` in a segment, a
 //! plate, an infinite structure, a dropped rod, a striker (its density) or a contact (where `"striker_material"` is that
-//! of the striker). A number that stands beside the name takes precedence over the material's. The names are replaced by
+//! of the striker). A number that is stated in addition takes precedence over the material's. The names are replaced by
 //! their numbers before a scene is read, so that a result shows the numbers with which it was computed.
 
 use std::borrow::Cow;

@@ -124,7 +124,7 @@ impl Structure {
 /// Static compliance of the elastic ones of these modes in ascending order of frequency (m/N).
 pub(crate) fn compliance(modes: &[Mode]) -> f64 {
     let elastic = modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
-    // from the smallest share: the remainder is the small difference from the whole, and a light striker feels little else
+    // summed from the smallest term: the remainder is the small difference from the whole, and decisive for a light striker
     elastic.rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
 }
 

@@ -145,8 +145,8 @@ impl<T> Neighbours<T> {
     }
 }
 
-/// The reason why a number cannot change. Beyond a bound the number itself is at fault, which tells nothing about the other side of
-/// the bound.
+/// The reason why a number cannot change. Beyond a bound the error is that of the number itself, which says nothing about the other
+/// side of the bound.
 fn told(faults: &[InvalidInput], path: &FieldPath) -> String {
     let own = |fault: &&InvalidInput| fault.field == *path.path();
     match faults.iter().find(|fault| !own(fault)).or(faults.first()) {

@@ -123,7 +123,7 @@ fn lead(
     let mut last = Instant::now();
     let mut given_up = false;
     let mut written = Ok(());
-    // until every worker has been told to stop, whatever happens in between
+    // until every worker has received the message to stop, also after an error
     while working > 0 {
         match world.any_process().immediate_matched_probe() {
             Some(message) => {

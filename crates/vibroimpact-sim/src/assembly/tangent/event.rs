@@ -67,7 +67,7 @@ impl Walk<'_> {
         let of = |(d, tangent): (usize, &Tangent)| {
             let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
             let (later, slope) = self.shift(d, (c, event), time_s, overlap, change, speed)?;
-            // what cancels where both shift alike
+            // the parts that cancel if both events shift by the same time
             let parts =
                 sum(&self.changes[d].psi[c], state[0]).abs() + self.system.links[c].sum(&tangent.amplitude).abs();
             let known = TOGETHER * (parts / slope).abs().max(tangent.time_s.abs());
