@@ -47,7 +47,7 @@ impl CommonPeriod {
             // the multiples of the common period of the loads before this one
             cycles = (cycles..=MOST_CYCLES).step_by(cycles as usize).find(repeats).ok_or_else(|| {
                 let allowed = format!(
-                    "a frequency that has a common period with the other loads, at most {MOST_CYCLES} periods of the slowest"
+                    "a frequency that has a common period with the other loads, of at most {MOST_CYCLES} periods of the slowest"
                 );
                 InvalidInput::new("omega_rad_s", omega, allowed).within("force").at(i).within("loads")
             })?;

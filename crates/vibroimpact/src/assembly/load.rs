@@ -102,7 +102,7 @@ impl Course<'_> {
             return self.sampled();
         }
         let Some(force_n) = amplitude else {
-            let allowed = format!("given; times_s and {list} may take its place, or file");
+            let allowed = format!("given, unless times_s and {list} or file take its place");
             return Err(InvalidInput::missing(name, allowed));
         };
         match (self.frequency_hz, self.phase_deg) {

@@ -73,7 +73,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     match bound(pose, cost)? {
         Ok(bound) if bound <= pose.tolerance => wall(pose, Some(bound), cost).map(Ok),
         Ok(bound) => {
-            Ok(Err(format!("the location moves: its compliance may change the restitution by up to {}", small(bound))))
+            Ok(Err(format!("the compliance of the location may change the restitution by up to {}", small(bound))))
         }
         Err(reason) => Ok(Err(reason)),
     }

@@ -122,7 +122,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     let _ = writeln!(
         text,
         "  {:<16}{:>14}{:>12}{:>12}{:>10}{:>12}",
-        "model", "restitution", "known to", "sub-imp.", "modes", "difference"
+        "model", "restitution", "uncertainty", "sub-imp.", "modes", "difference"
     );
     for tier in &comparison.tiers {
         let name = tier.model.as_str();

@@ -164,8 +164,7 @@ pub fn result(summary: &Summary) -> String {
 
 /// A table of modes, and the number of converged frequencies if not all are known to have converged.
 pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
-    let mut text =
-        format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
+    let mut text = format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape (kg^-1/2)");
     for (k, mode) in modes.iter().enumerate() {
         let frequency = mode.omega_rad_s / std::f64::consts::TAU;
         let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);
