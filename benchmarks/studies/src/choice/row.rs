@@ -19,6 +19,8 @@ const KNOWN: f64 = 30.0;
 /// Largest number of modes of a reference in a quick run.
 const MOST_OF_QUICK: usize = 1500;
 const REFERENCE_TOLERANCE: f64 = 1e-10;
+/// The same if there are several contacts, each of which amplifies earlier errors.
+const AFTER_SEVERAL: f64 = 1e-12;
 /// Factor between successive numbers of modes, also of the reference.
 const RAISE: f64 = std::f64::consts::SQRT_2;
 /// The smallest number of modes that is tried for the cheapest model, and its tolerances as shares of the requested tolerance.
@@ -48,7 +50,7 @@ pub(super) struct Row {
     pub settled: bool,
     pub reference_modes: usize,
     pub reference: Option<f64>,
-    /// Difference of the reference from one with fewer modes.
+    /// Difference of the reference from one with fewer modes, or the solver's uncertainty of the reference if that is larger.
     pub reference_change: Option<f64>,
     pub solves: u64,
     pub mode_steps: u64,
@@ -152,14 +154,21 @@ impl<'a> Truth<'a> {
         let finest = TOLERANCES.into_iter().fold(f64::INFINITY, f64::min);
         let difference = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| (a - b).abs());
         let mut modes = at_least.clamp(FEWEST_OF_REFERENCE, at_most);
+        let several = solve(&drawn.whole, modes, REFERENCE_TOLERANCE)?.sub_impacts.len() > 1;
+        let tolerance = if several { AFTER_SEVERAL } else { REFERENCE_TOLERANCE };
+        let reference = |modes| Ok::<_, Failure>(solve(&drawn.whole, modes, tolerance)?.restitution);
         let (restitution, change) = loop {
-            let restitution = exact(&drawn.whole, modes)?;
-            let change = difference(exact(&drawn.whole, (modes as f64 / RAISE) as usize)?, restitution);
+            let restitution = reference(modes)?;
+            let change = difference(reference((modes as f64 / RAISE) as usize)?, restitution);
             if modes >= at_most || change.is_none_or(|change| KNOWN * change <= finest) {
                 break (restitution, change);
             }
             modes = (2 * modes).min(at_most);
         };
+        let impact = impact(&drawn.whole, modes, tolerance)?;
+        let settings = Settings { estimate_uncertainty: true, ..impact.settings };
+        let uncertainty = Impact { settings, ..impact }.solve()?.restitution_uncertainty;
+        let change = change.zip(uncertainty).map(|(change, uncertainty)| change.max(uncertainty));
         let off = |e: Option<f64>| difference(e, restitution);
         let listed = drawn.scene.structure != drawn.whole.structure;
         let most = if listed { drawn.scene.mode_shapes(usize::MAX).map_or(0, |modes| modes.len()) } else { modes };
@@ -184,9 +193,14 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Solves the impact once with this many modes and remainder modes for all others.
-fn solve(scene: &Scene, modes: usize, tolerance: f64) -> Result<Solution, Failure> {
+/// The impact with this many modes and remainder modes for all others.
+fn impact(scene: &Scene, modes: usize, tolerance: f64) -> Result<Impact, Failure> {
     let impact = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene.clone() }.impact()?;
     let settings = Settings { tolerance, estimate_uncertainty: false, ..impact.settings };
-    Ok(Impact { settings, ..impact }.solve()?)
+    Ok(Impact { settings, ..impact })
+}
+
+/// Solves it once.
+fn solve(scene: &Scene, modes: usize, tolerance: f64) -> Result<Solution, Failure> {
+    Ok(impact(scene, modes, tolerance)?.solve()?)
 }
