@@ -22,7 +22,7 @@ use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, energy_of_remainder, too_short, with_one_remainder_mode, with_softer_remainder,
+    Change, at_the_end, energy_of_remainder, still_growing, too_short, with_one_remainder_mode, with_softer_remainder,
 };
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
@@ -305,12 +305,16 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
         rungs.last.find_tail(pose, cost)?;
     }
     let exhausted = matches!(pose.source, Source::Listed { .. }) && rungs.last.count == pose.source.most();
+    let growing = match &pose.source {
+        Source::Listed { modes, .. } => still_growing(modes),
+        Source::Beam { .. } | Source::Computed { .. } => 1.0,
+    };
     let spread = rungs.spread().filter(|_| !settled);
     let reason = reason(pose, &rungs, settled, exhausted, spread);
     let spread = spread.map(|(spread, _)| spread);
     let left_out = match spread {
         _ if rungs.is_complete() => 0.0,
-        Some(spread) if exhausted => rungs.left_out_at_the_end().max(spread),
+        Some(spread) if exhausted => growing * rungs.left_out_at_the_end().max(spread),
         Some(spread) => rungs.left_out().max(rungs.left_out_at_the_end()).max(spread),
         None => rungs.left_out(),
     };

@@ -4,7 +4,7 @@
 //! separately, from the same impact with more modes and remainder modes for all others, for two numbers of modes,
 //!
 //! ```text
-//! u = |e - e_M| + 3 |e_M - e_(M/1.4)| + d_c,
+//! u = |e - e_M| + max( 3 |e_M - e_(M/1.4)|, |e - e_M|/4 ) + d_c,
 //! ```
 //!
 //! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
@@ -27,8 +27,10 @@ use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
 
 /// The comparison begins with the expected number of modes for this tolerance.
 const LOOSE: f64 = 3e-3;
-/// Weight of the only change that there is.
+/// Weight of the only change between richer impacts, and least share of the change from the stated modes that counts as well: two
+/// richer impacts may agree by accident.
 const CAUTION: f64 = 3.0;
+const LEAST_SHARE: f64 = 0.25;
 /// The solver's tolerance in the comparison, and the factor of the number of modes at which it costs as much as the impact itself,
 /// which is solved twice and far more accurately.
 const SOLVER: f64 = 1e-6;
@@ -116,9 +118,11 @@ impl Compared {
     fn left_out(&self, impact: &Impact, solution: &Solution) -> f64 {
         let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
         let change = |other: &Solution| Change::between(other, self.richer.or(solution), momentum_n_s);
-        let further = self.fewer.as_ref().map_or(0.0, |fewer| CAUTION * change(fewer.or(solution)).size());
+        let stated = change(solution).restitution;
+        let further = |fewer: &Other| (CAUTION * change(fewer.or(solution)).size()).max(LEAST_SHARE * stated);
+        let further = self.fewer.as_ref().map_or(0.0, further);
         let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
-        (change(solution).restitution + further + softer).min(1.0)
+        (stated + further + softer).min(1.0)
     }
 }
 
