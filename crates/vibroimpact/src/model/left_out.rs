@@ -46,7 +46,7 @@ const FLIGHTS: f64 = 0.5;
 const CAUTION_AT_THE_END: f64 = 4.0;
 /// Least growth of the mean square of the shapes from one quarter of a list to the next, if they still grow at its end, and the
 /// factor of the estimate.
-const GROWTH: f64 = 2.0;
+const GROWTH: f64 = 1.5;
 const STILL_GROWING: f64 = 4.0;
 /// `R` from which on changes at the end of a list are informative.
 const RESOLVED: f64 = 0.1;
