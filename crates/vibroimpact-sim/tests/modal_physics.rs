@@ -188,13 +188,18 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     }
     let solver = Solver::new(&structure(good)).unwrap();
     let fails = |striker: Striker, start: Option<Start>, settings: Settings| {
-        solver.solve(&striker, &hertz(), start.as_ref(), &settings).unwrap_err().field
+        let fault = solver.solve(&striker, &hertz(), start.as_ref(), &settings).unwrap_err();
+        // what also records the motion refuses the same
+        let recorded = solver.record(&striker, &hertz(), start.as_ref(), &settings).unwrap_err();
+        assert_eq!(recorded.to_string(), fault.to_string());
+        fault.field
     };
     let fine = Settings::default();
     assert_eq!(fails(Striker { mass_kg: 0.0, speed_m_s: 1.0 }, None, fine), "mass_kg");
     assert_eq!(fails(Striker { mass_kg: f64::NAN, speed_m_s: 1.0 }, None, fine), "mass_kg");
     assert_eq!(fails(Striker { mass_kg: 1.0, speed_m_s: f64::NAN }, None, fine), "speed_m_s");
     assert_eq!(fails(ball(), Some(Start::at_rest(2)), fine), "amplitude");
+    assert_eq!(fails(ball(), Some(Start::at_rest(0)), fine), "amplitude");
     assert_eq!(fails(ball(), Some(Start { gap_m: -1.0, ..Start::at_rest(1) }), fine), "gap_m");
     assert_eq!(fails(ball(), None, Settings { tolerance: 0.0, ..fine }), "tolerance");
     let wall = Striker { mass_kg: f64::INFINITY, speed_m_s: 1.0 };

@@ -3,7 +3,7 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
-use super::solve::{Impact, LOOSEST, Run, Solver};
+use super::solve::{Impact, LOOSEST, Run, Solved, Solver};
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{COARSER, Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
@@ -183,7 +183,8 @@ impl Solver {
     /// The impact at its tolerance and at a coarser one, differentiated along both.
     fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
-        let (solution, fine, _) = self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss, |_| ())?;
+        let Solved { solution, run: fine, .. } =
+            self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss)?;
         let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
         let none = |solution, why| {
             let derivatives = parameters.iter().map(|_| Err(why)).collect();

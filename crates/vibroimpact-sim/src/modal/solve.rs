@@ -92,6 +92,15 @@ pub(crate) struct Run {
     pub record: assembly::solve::Record,
 }
 
+/// A solved impact.
+pub(crate) struct Solved {
+    pub solution: Solution,
+    pub run: Run,
+    system: System,
+    /// Of the run, if it was computed while coarser problems were solved in another thread.
+    work_and_damping_j: Option<[f64; 2]>,
+}
+
 /// The restitution of an impact, and those that it would have if it ended after each of its contacts.
 struct Restitutions {
     flights: Vec<Flight>,
@@ -179,7 +188,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
-        Ok(self.solve_into(striker, law, start, settings, Keep::Result, |_| ())?.0)
+        Ok(self.solve_into(striker, law, start, settings, Keep::Result)?.solution)
     }
 
     /// Solves one impact and keeps its motion.
@@ -193,22 +202,19 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Recording, InvalidInput> {
-        let motion = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
-        let system = System::new(&posed::assembly(&self.modes, &self.moved, striker, &motion).with_laws(Vec::new()));
-        let tables = self.tables(&system);
-        let book = |run: &Run| work_and_damping_j(&system, &run.record, tables);
-        let (solution, Run { record, counts, .. }, booked) =
-            self.solve_into(striker, law, start, settings, Keep::Motion, book)?;
+        let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
+        let Solved { solution, run, system, work_and_damping_j } =
+            self.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
         Ok(Recording {
             solution,
-            counts,
+            counts: run.counts,
             modes: self.modes.clone(),
             moved: self.moved.clone(),
             striker: *striker,
-            start: motion,
-            record,
-            tables: Arc::clone(tables),
-            work_and_damping_j: booked,
+            start,
+            record: run.record,
+            tables: Arc::clone(self.tables(&system)),
+            work_and_damping_j,
             system,
         })
     }
@@ -227,16 +233,14 @@ impl Solver {
         Ok(self.solve_and_keep(striker, law, start, settings)?.history(law.clone()))
     }
 
-    /// `meanwhile` is applied to the run while coarser problems are solved in another thread, if they are.
-    pub(crate) fn solve_into<T>(
+    pub(crate) fn solve_into(
         &self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
         settings: &Settings,
         keep: Keep,
-        meanwhile: impl FnOnce(&Run) -> T,
-    ) -> Result<(Solution, Run, Option<T>), InvalidInput> {
+    ) -> Result<Solved, InvalidInput> {
         striker.check()?;
         settings.check()?;
         let at_rest;
@@ -257,18 +261,20 @@ impl Solver {
 
         let impact = Impact { striker, law, start, settings };
         let mut lowered = self.lower(&impact);
-        let mut solve = || self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
+        let tolerance = settings.tolerance.min(LOOSEST);
         let Settings { estimate_uncertainty, concurrent, .. } = *settings;
-        let (beside, mut run, found) = if estimate_uncertainty && concurrent {
-            let solve_and_go_on = || {
-                let run = solve();
-                let found = meanwhile(&run);
-                (run, found)
+        let (beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
+            let solve_and_book = || {
+                let run = self.run_lowered(&impact, &mut lowered, tolerance, keep);
+                let system = &lowered.system;
+                let book = || work_and_damping_j(system, &run.record, self.tables(system));
+                let booked = (keep == Keep::Motion).then(book);
+                (run, booked)
             };
-            let (coarser, (run, found)) = both(true, || self.coarser(&impact), solve_and_go_on);
-            (Some(coarser), run, Some(found))
+            let (coarser, (run, booked)) = both(true, || self.coarser(&impact), solve_and_book);
+            (Some(coarser), run, booked)
         } else {
-            (None, solve(), None)
+            (None, self.run_lowered(&impact, &mut lowered, tolerance, keep), None)
         };
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
@@ -288,7 +294,7 @@ impl Solver {
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };
-        Ok((solution, run, found))
+        Ok(Solved { solution, run, system: lowered.system, work_and_damping_j })
     }
 
     /// Coarser solutions of the same impact in other units of time, up to the first without a restitution.
