@@ -3,8 +3,8 @@
 use std::panic::resume_unwind;
 use std::thread::{Builder, scope};
 
-/// Does both: `beside` in a thread of its own if `concurrent` holds and a thread can be had, otherwise after `here`. What they
-/// find does not depend on it.
+/// Does both: `beside` in a thread of its own if `concurrent` holds and a thread can be had, otherwise after `here`. The
+/// results are the same either way.
 ///
 /// ```
 /// let (sum, product) = vibroimpact_sim::both(true, || (1..=4).sum::<i32>(), || (1..=4).product::<i32>());

@@ -116,9 +116,7 @@ fn compare(assembly: &Assembly<Law>, end_s: f64, floor: f64) -> Vec<(usize, Inte
     intervals
 }
 
-#[test]
-fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
-    // Half periods against the stop and away from it alternate.
+fn mass_on_a_spring_before_a_stop() -> Assembly<Law> {
     let body = Body {
         modes: vec![BodyMode { omega_rad_s: 10.0, damping_ratio: 0.0 }],
         amplitude: vec![0.0],
@@ -126,7 +124,13 @@ fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
     };
     let law = Law::from(LinearSpring::new(1e6).unwrap());
     let stop = Contact { sides: [Point::Ground, mass(0, 100.0)], gap_m: 0.0, law };
-    let assembly = Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![] };
+    Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![] }
+}
+
+#[test]
+fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
+    // Half periods against the stop and away from it alternate.
+    let assembly = mass_on_a_spring_before_a_stop();
     let (found, intervals) = solve(&assembly, 34.6, 1e-12);
     let (pressed, free) = (PI / 10100f64.sqrt(), PI / 10.0);
     assert_eq!(found.contacts[0].statistics.intervals as usize, intervals.len());
@@ -142,14 +146,7 @@ fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
 /// Statistics from a time within an interval of contact on, in closed form.
 #[test]
 fn statistics_begin_exactly_within_an_interval() {
-    let body = Body {
-        modes: vec![BodyMode { omega_rad_s: 10.0, damping_ratio: 0.0 }],
-        amplitude: vec![0.0],
-        rate: vec![10.0],
-    };
-    let law = Law::from(LinearSpring::new(1e6).unwrap());
-    let stop = Contact { sides: [Point::Ground, mass(0, 100.0)], gap_m: 0.0, law };
-    let assembly = Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![] };
+    let assembly = mass_on_a_spring_before_a_stop();
     let omega = 10100f64.sqrt();
     let (pressed, free) = (PI / omega, PI / 10.0);
     let run_from = |statistics_from_s: f64, end_s: f64| {

@@ -51,9 +51,7 @@ impl Seen {
         let (by_shape, sign) = if own <= SAME || own <= opposite { (own, 1.0) } else { (opposite, -1.0) };
         (by_shape.max(by_frequency), sign)
     }
-}
 
-impl Seen {
     fn is_unseen_beside(&self, other: &Seen) -> bool {
         let largest = |mode: &Seen| mode.shapes.iter().fold(0.0f64, |most, shape| most.max(shape.abs()));
         largest(self) <= UNSEEN * largest(other)

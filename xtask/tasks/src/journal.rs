@@ -1,6 +1,8 @@
 //! Rows of a long run in a file, so that an interrupted run can be resumed.
 
 use crate::failure::{BadInput, Failure};
+use crate::progress::Progress;
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};
@@ -52,6 +54,31 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
             rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect();
         self.file.write_all(lines?.as_bytes())?;
         self.rows.extend(rows);
+        Ok(())
+    }
+
+    /// Computes the rows of these cases on all cores. Every batch of so many cases is written before the next one begins.
+    ///
+    /// # Errors
+    /// The first error of `job`, or if rows cannot be written.
+    pub fn compute<C: Sync>(
+        &mut self,
+        cases: &[C],
+        batch: usize,
+        progress: &Progress,
+        job: impl Fn(&C) -> Result<R, Failure> + Sync,
+    ) -> Result<(), Failure>
+    where
+        R: Send,
+    {
+        let each = |case| {
+            let row = job(case);
+            progress.add(1);
+            row
+        };
+        for batch in cases.chunks(batch) {
+            self.extend(batch.par_iter().map(each).collect::<Result<Vec<R>, Failure>>()?)?;
+        }
         Ok(())
     }
 

@@ -21,8 +21,8 @@ of bending, strings, plates, lists of modes, beams that move before the impact o
 places near supports and tips; strikers from a millionth to three times the mass of the structure, 0.05 to 5 m/s, every \
 law of contact, damping ratios from 0.001 to 0.1 and none; each at tolerances from 1e-2 to 1e-6. The reference has twice \
 the modes of the finest answer or more, of a list the beam that it was taken from, remainder modes for all others and \
-a tolerance of 1e-10. Its own error is estimated by the same with fewer modes. Where that error is more than a third of \
-the tolerance, the scene is listed and not counted.";
+a tolerance of 1e-10, and of 1e-12 after several contacts. Its own error is the larger of its change from fewer modes and of \
+the solver's uncertainty. Where that error is more than a third of the tolerance, the scene is listed and not counted.";
 
 /// Options of the study of the choice.
 #[derive(clap::Args)]

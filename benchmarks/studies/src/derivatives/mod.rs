@@ -13,7 +13,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use posed::{Posed, random_impacts};
-use rayon::prelude::*;
 use row::{FEW, OUTPUTS, Row, Tally, row};
 use tasks::{Failure, Journal, Progress};
 
@@ -44,14 +43,7 @@ pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     let missing: Vec<(u32, Posed)> = (0..wanted.impacts).zip(random_impacts()).filter(is_missing).collect();
     let mut progress = Progress::of("impacts");
     progress.begin("", u64::from(wanted.impacts), u64::from(wanted.impacts) - missing.len() as u64);
-    for batch in missing.chunks(BATCH) {
-        let compare = |(number, posed): &(u32, Posed)| {
-            let found = row(*number, posed);
-            progress.add(1);
-            found
-        };
-        journal.extend(batch.par_iter().map(compare).collect::<Vec<Row>>())?;
-    }
+    journal.compute(&missing, BATCH, &progress, |(number, posed)| Ok(row(*number, posed)))?;
     progress.finish();
     let mut rows = journal.into_rows();
     rows.retain(|row| row.number < wanted.impacts);
@@ -67,7 +59,7 @@ fn told(rows: &[Row]) -> String {
     let (lost, unknown) = (sum(|row| row.lost), sum(|row| row.unknown));
     let mut told = format!(
         "{} impacts, of which {} end with a rebound, with at most {most} contacts; by {lost} parameters they have another number \
-         of contacts in 32 digits, and {unknown} derivatives these do not know to a millionth\n",
+         of contacts in 32 digits, and by {unknown} parameters the derivatives in 32 digits are not exact to a millionth\n",
         rows.len(),
         rebounds.len(),
     );

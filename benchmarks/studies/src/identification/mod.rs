@@ -6,7 +6,6 @@ mod row;
 use std::fs;
 use std::path::PathBuf;
 
-use rayon::prelude::*;
 use row::{FREE, Kind, Row, STARTS, row};
 use tasks::{Failure, Journal, Progress};
 
@@ -44,14 +43,9 @@ pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     let missing: Vec<(Kind, u64)> = all.iter().copied().filter(is_missing).collect();
     let mut progress = Progress::of("tables");
     progress.begin("", all.len() as u64, (all.len() - missing.len()) as u64);
-    for batch in missing.chunks(BATCH) {
-        let solve = |&(kind, number): &(Kind, u64)| {
-            let found = row(kind, number).map_err(|fault| format!("{kind:?} {number}: {fault}"));
-            progress.add(1);
-            found
-        };
-        journal.extend(batch.par_iter().map(solve).collect::<Result<Vec<Row>, String>>()?)?;
-    }
+    journal.compute(&missing, BATCH, &progress, |&(kind, number)| {
+        row(kind, number).map_err(|fault| format!("{kind:?} {number}: {fault}").into())
+    })?;
     progress.finish();
     let mut rows = journal.into_rows();
     rows.retain(|row| all.contains(&(row.kind, row.number)));

@@ -5,7 +5,7 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 
 /// Bounds on magnitudes: wide enough for any system of units, narrow enough that no product overflows.
-const SCALE_MAX: f64 = 1e30;
+pub(crate) const SCALE_MAX: f64 = 1e30;
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// Smallest tolerance.
@@ -189,7 +189,8 @@ fn is_finite(value: f64) -> bool {
     value.abs() <= SCALE_MAX
 }
 
-fn require_all_finite(values: &[f64], count: usize, field: &'static str) -> Result<(), InvalidInput> {
+/// Checks that there are so many values, and that all lie in the range of the solver.
+pub(crate) fn require_all_finite(values: &[f64], count: usize, field: &'static str) -> Result<(), InvalidInput> {
     InvalidInput::unless(
         values.len() == count,
         field,

@@ -1,14 +1,14 @@
 //! The problem: a structure with its modes, a striker, and the initial motion.
 
 use crate::assembly::BodyMode;
+use crate::assembly::problem::{SCALE_MAX, require_all_finite};
 use beam_modes::PointMode;
 use invalid_input::InvalidInput;
 
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
-/// Bounds on masses, speeds and shapes: wide enough for any unit system, narrow enough that no product overflows.
+/// The least mass (kg), the reciprocal of the largest: wide enough for any unit system, narrow enough that no product overflows.
 const SCALE_MIN: f64 = 1e-30;
-const SCALE_MAX: f64 = 1e30;
 /// A mode that moves less than this (kg^-1/2) at the contact is not excited by it.
 const SHAPE_FLOOR: f64 = 1e-30;
 
@@ -149,21 +149,8 @@ impl Start {
     /// # Errors
     /// Names the field, its value and what would be allowed.
     pub fn check(&self, modes: usize) -> Result<(), InvalidInput> {
-        for (field, values) in [("amplitude", &self.amplitude), ("rate", &self.rate)] {
-            InvalidInput::unless(
-                values.len() == modes,
-                field,
-                format!("{} values", values.len()),
-                "a list with one value for each mode",
-            )?;
-            for (k, value) in values.iter().enumerate() {
-                let ok = value.abs() <= SCALE_MAX;
-                if !ok {
-                    let allowed = "a finite number of at most 1e30 in size";
-                    return Err(InvalidInput::new((field, k), *value, allowed));
-                }
-            }
-        }
+        require_all_finite(&self.amplitude, modes, "amplitude")?;
+        require_all_finite(&self.rate, modes, "rate")?;
         InvalidInput::unless(
             (0.0..=SCALE_MAX).contains(&self.gap_m),
             "gap_m",

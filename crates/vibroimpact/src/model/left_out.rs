@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Changes that decrease as `1/N` add up to 2.4 times the one by the last step of a factor of 1.4, and to 3 times if they decrease as
-//! `N^(-0.83)`. So slowly converges the restitution of a light ball on a Timoshenko beam.
+//! `N^(-0.83)`. The restitution of a light ball on a Timoshenko beam converges as slowly as that.
 //!
 //! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
 //! the truncated modes; if they vibrate, the force was too fast for them. This share is known from one impact alone, and detects

@@ -163,12 +163,16 @@ impl AddAssign for Cost {
 impl Cost {
     /// Adds a solution with this many modes.
     pub(crate) fn add(&mut self, counts: &Counts, modes: usize) {
-        self.solves += 1;
-        self.contact_steps += counts.contact_steps;
-        self.rejected_steps += counts.rejected_steps;
-        self.newton_iterations += counts.newton_iterations;
-        self.law_evaluations += counts.law_evaluations;
-        self.flight_steps += counts.flight_steps;
-        self.mode_steps += counts.steps() * modes.max(1) as u64;
+        *self += Cost {
+            solves: 1,
+            modes_computed: 0,
+            contact_steps: counts.contact_steps,
+            rejected_steps: counts.rejected_steps,
+            newton_iterations: counts.newton_iterations,
+            law_evaluations: counts.law_evaluations,
+            flight_steps: counts.flight_steps,
+            mode_steps: counts.steps() * modes.max(1) as u64,
+            panels: 0,
+        };
     }
 }
