@@ -10,12 +10,13 @@ use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Report, write_whole};
 
-const INTRODUCTION: &str = "Every number and every claim of the thesis's text that can be computed, beside ours, chapter \
-by chapter. A printed number is held to half a unit of its last digit. A number in words and a trend have a tolerance \
-with its reason. A verdict is one of four: ours agrees; it differs; it is indecisive, because the limit lies within \
-its own uncertainty or because the words can be read either way; or it cannot be decided from the text, because it \
-depends on what the text does not print. Identities and self-checks are listed and not counted. The main figures of every \
-chapter follow its statements; the chapters' own reports have all of them.";
+const INTRODUCTION: &str = "This report compares every number and every claim of the thesis's text that can be \
+computed with our result, chapter by chapter. The tolerance of a printed number is half a unit of its last digit. A \
+number in words and a trend have a tolerance with its reason. There are four verdicts: our number agrees; it differs; \
+it is indecisive, because the limit lies within its uncertainty or because the words can be read either way; or the \
+text does not suffice to decide, because the verdict depends on information that it does not contain. Identities and \
+self-checks are listed but not counted. The main figures of every chapter follow its statements; the reports of the \
+chapters have all figures.";
 
 /// Runs all chapters, each into its own folder under `out`, and writes `report.md`, `report.html` and `statements.csv`
 /// beside them. Returns a summary in a few lines.
@@ -53,7 +54,7 @@ fn deviations(finished: &[(String, Finished)]) -> Figure {
     let statements = finished.iter().flat_map(|(_, found)| &found.study.stated);
     let all: Vec<(Kind, f64, Verdict)> =
         statements.filter_map(|one| Some((one.kind, one.deviation()?, one.verdict()))).collect();
-    let x = Axis::new("number of the text, in the order of the chapters").integers();
+    let x = Axis::new("printed number, in the order of the chapters").integers();
     let y = Axis::new("(ours − thesis) / tolerance").limits(-1.05 * EDGE, 1.05 * EDGE);
     let mut panel = Panel::new(x, y).height(240.0);
     for limit in [-1.0, 1.0] {
@@ -70,7 +71,7 @@ fn deviations(finished: &[(String, Finished)]) -> Figure {
         let label = format!("{}: {}", kind.title().to_lowercase(), verdict.marked());
         panel = panel.with(Series::points(&x, &y, marker).colour(colour).label(label));
     }
-    Figure::new("The numbers of the thesis: ours less the thesis's, in units of the tolerance").row([panel])
+    Figure::new("Our numbers minus those of the thesis, in units of the tolerance").row([panel])
 }
 
 fn report(finished: &[(String, Finished)], quick: bool) -> Result<Report, Failure> {
@@ -113,13 +114,13 @@ fn report(finished: &[(String, Finished)], quick: bool) -> Result<Report, Failur
     report.figure(
         "deviations",
         &deviations(finished),
-        "Between the lines ours agrees; half a unit of the last digit is the tolerance of a printed number. Farther than 12 \
-         stands at the edge.",
+        "Between the two lines our number agrees. The tolerance of a printed number is half a unit of its last digit. \
+         Differences of more than 12 tolerances are drawn at the edge.",
     )?;
     for (heading, verdict) in [
         ("Where we differ", Verdict::Differs),
-        ("What our numbers do not decide", Verdict::Indecisive),
-        ("What the text does not let anyone decide", Verdict::Undecidable),
+        ("Statements on which our numbers are indecisive", Verdict::Indecisive),
+        ("Statements that cannot be decided from the text", Verdict::Undecidable),
     ] {
         let chosen: Vec<Row> = rows.iter().filter(|row| row.verdict == verdict).cloned().collect();
         if !chosen.is_empty() {
@@ -160,7 +161,7 @@ mod tests {
             "| S | 2.5 | 1.56 | 1.5605 | ± 0.005 | half a unit of the last digit | ✓ agrees |",
             "figures/deviations.svg",
             "figures/chapter-2-fig-2-08.svg",
-            "## What the text does not let anyone decide",
+            "## Statements that cannot be decided from the text",
         ] {
             assert!(text.contains(part), "{part} is not in {text}");
         }

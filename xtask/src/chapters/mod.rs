@@ -82,8 +82,8 @@ impl Part {
     fn title(self) -> String {
         match self {
             Part::Chapter(number) => format!("Chapter {number} of the thesis, computed anew"),
-            Part::Ensemble => "What is our choice in chapter 4, varied".to_owned(),
-            Part::Theories => "Two theories of bending, and what the thesis could not see".to_owned(),
+            Part::Ensemble => "Our choices in chapter 4, varied".to_owned(),
+            Part::Theories => "Two theories of bending, and the effects beyond the thesis".to_owned(),
         }
     }
 }

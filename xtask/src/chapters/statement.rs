@@ -175,7 +175,8 @@ impl Statement {
 
     /// A trend that depends on parameters that the text does not state. It holds in `holds` of `of` plausible choices.
     pub fn choices(quantity: impl Into<String>, source: &str, words: &str, (holds, of): (usize, usize)) -> Statement {
-        let reason = "borne out, or refuted, by nine in ten of the choices; between, the choice decides";
+        let reason = "confirmed if it holds in nine of ten choices, refuted if it fails in nine of ten; otherwise the \
+                      choice decides";
         let share = holds as f64 / of as f64;
         let texts = [source, words, reason];
         Statement::new(Kind::Trend, quantity.into(), texts, Bounds::Choices, share)

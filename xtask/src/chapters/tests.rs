@@ -145,7 +145,7 @@ fn the_ensemble_is_complete_and_the_same_on_any_number_of_threads() {
 #[test]
 fn the_theories_are_complete_and_find_what_others_found() {
     let figures = ["phase-speeds", "modes-0-4", "modes-golden", "predictable", "by-mass", "maps"];
-    let tables = ["phase-speeds-told.csv", "limits.csv", "coefficients.csv", "predictable-by-contacts.csv"];
+    let tables = ["phase-speeds-printed.csv", "limits.csv", "coefficients.csv", "predictable-by-contacts.csv"];
     check_chapter(Part::Theories, &figures, &[&tables[..], &["tables.csv", "law.csv", "law-compared.csv"]].concat());
     // a quick run computes the limits and the errors of the phase speeds in the same way
     let folder = tempfile::tempdir().unwrap();

@@ -53,13 +53,14 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     let figure = Figure::new("Fig. 2.6  First contact: semi-analytical (N = 6) and full solution")
         .row([masses, ratios.0])
         .row(forces);
-    study.figure("fig-2-06", &figure, "Semi-analytical solution dashed, full solution solid.")?;
+    study.figure("fig-2-06", &figure, "The semi-analytical solution is dashed, the full solution solid.")?;
     let figure = Figure::new("Error of the semi-analytical solution in v_f / v, for N functions").row([ratios.1]);
     study.figure(
         "semi-analytical-errors",
         &figure,
-        "The functions t²(1-t)²tᵏ cannot follow the force's start and end, which go with the power 3/2: more of them \
-         help algebraically. A curve ends where no solution with a force that only pushes can be reached.",
+        "The force begins and ends as a power 3/2 of time, which the functions t²(1-t)²tᵏ cannot represent. The error \
+         therefore decreases only algebraically with their number. A curve ends where no solution without a tensile \
+         force is found.",
     )
 }
 
@@ -74,7 +75,7 @@ fn basis(study: &mut Study) -> Result<(), Failure> {
         panel = panel.with(Series::line(&time, &values).label(format!("φ{}", k + 1)));
     }
     let figure = Figure::new("Fig. 2.5  The orthogonal basis functions").row([panel]);
-    study.figure("fig-2-05", &figure, "Polynomials that vanish with their slope at both ends (Eqs. 2.15 to 2.20).")
+    study.figure("fig-2-05", &figure, "The polynomials and their slopes vanish at both ends (Eqs. 2.15 to 2.20).")
 }
 
 /// Fig. 2.6(a), (c) and (d).
@@ -188,14 +189,14 @@ fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), 
     let reach = fine.iter().zip(reached).filter(|(_, reached)| *reached).map(|(s, _)| *s).fold(0.0, f64::max);
     study.state(
         Statement::trend(
-            "largest S to which the solution with N = 6 can be followed while its force pushes",
+            "largest S to which the solution with N = 6 can be followed without a tensile force",
             "2.3",
             "good for S ≲ 1.2×10⁴, for even larger S eventually deteriorates",
             (parameters.semi_analytical_until, LARGEST),
             "from the printed limit to the last S with a separation",
             reach,
         )
-        .note("A pull of up to 3 % of the largest force counts as none."),
+        .note("A tensile force of up to 3 % of the largest force is neglected."),
     );
     Ok((ratio, errors))
 }

@@ -23,7 +23,7 @@ struct Row {
 }
 
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
-    study.section("One number (Table 2.1, Table A.1, Fig. A.1)");
+    study.section("The single parameter S (Table 2.1, Table A.1, Fig. A.1)");
     for row in &parameters.table_2_1 {
         let impact = Impact::sphere_on_beam(Material::STEEL, row.side_m, row.side_m, row.radius_m, row.speed_m_s)?;
         let quantity = format!("S for b = {} m, R = {} m, v = {} m/s", row.side_m, row.radius_m, row.speed_m_s);
@@ -78,7 +78,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     let figure = Figure::new("Fig. A.1  Three sets of parameters, one S = 0.528")
         .row([own(0, "(a) set 1"), own(1, "(b) set 2")])
         .row([together]);
-    study.figure("fig-a-01", &figure, "The forces of the three sets coincide once they are freed of their units.")
+    study.figure("fig-a-01", &figure, "The nondimensional forces of the three sets coincide.")
 }
 
 fn groups(units: &Units) -> Result<Groups, Failure> {

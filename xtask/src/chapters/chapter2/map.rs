@@ -61,10 +61,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     let (points, turnings) = rayon::join(|| study.sweep(&values, 1, point), || turning_points(count));
     let seconds = start.elapsed().as_secs_f64();
     let (mut points, turnings) = (points?, turnings?);
-    study.remark(format!(
-        "Map of {} values of S and {count} turning points: {seconds:.2} s (aim: 3 s for 1000 and 30 on two cores).",
-        values.len()
-    ));
+    study.remark(format!("The map of {} values of S and {count} turning points took {seconds:.2} s.", values.len()));
     let row = |point: &Point| {
         let s = point.s;
         let one = move |(i, c): (usize, &SubImpact)| Row { s, contact: i + 1, start: c.start, end: c.end };
@@ -122,8 +119,8 @@ fn turning_table(
         study.state(statement.uncertain(critical.uncertainty).note(note));
     }
     study.text(&format!(
-        "Critical S: {:.14} ± {:.0e}. The n-th separation exists for S below the n-th turning point; the numbers go on \
-         for ever towards the critical value.",
+        "The critical value of S is {:.14} ± {:.0e}. The n-th separation exists for S below the n-th turning point. \
+         There are infinitely many turning points, which tend to the critical value.",
         critical.s, critical.uncertainty
     ));
     let thesis = |row: &TurningRow| row.s_thesis.as_ref()?.parse::<f64>().ok();
@@ -181,8 +178,8 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
     study.figure(
         "fig-2-04",
         &Figure::new("Fig. 2.4  Possible behaviours").row([panel]),
-        "Left of the first upright line the body leaves after one contact; right of the second it never separates. Towards \
-         the first line from the right the number of separations grows without bound.",
+        "Left of the first vertical line the body leaves after one contact, and right of the second it never \
+         separates. As S decreases towards the first line, the number of separations grows without bound.",
     )
 }
 
@@ -201,8 +198,8 @@ fn inset(study: &mut Study) -> Result<(), Failure> {
     );
     let middle = ends.get(TRACKED / 2).map_or(f64::NAN, |end| 1e-5 * end);
     study.state(statement.note(format!(
-        "The text does not print the factor of the axis, but it is linear and its times go up to 5×10⁵. Between contact {} \
-         at {} and contact {TRACKED} at {} the curves crowd there.",
+        "The text does not state the factor of the axis, but the axis is linear and its times reach 5×10⁵. Between \
+         contact {} at {} and contact {TRACKED} at {} the curves are close together there.",
         TRACKED / 2 + 1,
         significant(middle, 3),
         significant(1e-5 * last, 3)
@@ -290,10 +287,9 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
             .row([upper.with(Series::vertical_rule(critical.s))])
             .row([lower])
             .row([linear, inset]),
-        "A curve of separation and the next curve of touch meet at a turning point, where the number is that of the \
-         contact that ends there; in (c) and (d) it stands at the curve itself, and only \
-         ends are drawn, from which starts cannot be told there. Colours repeat. Drawn are 18 separations, as \
-         many as the thesis has followed. All curves approach the critical S, where the second contact comes after \
-         infinite time.",
+        "A curve of separation and the next curve of touch meet at a turning point, whose number is that of the \
+         contact that ends there. In (c) and (d) the number is at the curve itself, and only the ends of contacts are \
+         drawn, because their starts would coincide with them. Colours repeat. The figure shows 18 separations, as \
+         many as the thesis. All curves approach the critical S, at which the time to the second contact is infinite.",
     )
 }

@@ -146,9 +146,9 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     study.figure(
         "methods",
         &figures[0],
-        "Each point is one setting. The Galerkin states with the thesis's N = 50 keep the error of their kernel however \
-         short the steps. The specialised solver does not count evaluations; with it, and by the clock, the \
-         picture is `timings-methods.svg`.",
+        "Each point is one setting. The Galerkin states with N = 50, as in the thesis, have the error of their kernel \
+         however short the steps are. The specialised solver does not count evaluations; `timings-methods.svg` \
+         includes it and shows the error against the time.",
     )?;
     study.aside("timings-methods.svg", &figures[1])?;
     for (s, _) in PROBLEMS {

@@ -41,8 +41,8 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     study.figure(
         "fig-2-03",
         &figure,
-        "The force at S = 15 is drawn on a logarithmic axis: each contact is an order of magnitude weaker than the one \
-         before. With S = 4×10⁵ it never reaches zero again.",
+        "The force at S = 15 has a logarithmic axis, because each contact is weaker than the one before by an order of \
+         magnitude. With S = 4×10⁵ the force does not vanish again.",
     )
 }
 
@@ -53,11 +53,11 @@ fn oscillations(study: &mut Study) -> Result<(), Failure> {
     let told: Vec<String> = found.iter().map(|ratio| significant(*ratio, 2)).collect();
     study.state(
         Statement::trend(
-            "largest ratio of a swing of the compression, about the mean of its neighbours, to the one before; four S",
+            "largest ratio of successive amplitudes of the compression, each about the mean of its neighbours; four S",
             "2.2.5, Fig. 2.3",
             "during final sustained contact, the contact force shows decaying oscillations",
             (0.0, 1.0),
-            "each smaller than the one before",
+            "each amplitude is smaller than the one before",
             found.iter().copied().fold(0.0, f64::max),
         )
         .note(format!("At S = {}: {}.", PLACES.map(|s| significant(s, 3)).join(", "), told.join(", "))),

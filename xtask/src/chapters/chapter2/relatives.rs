@@ -105,15 +105,16 @@ fn linear_stiffness(study: &mut Study) -> Result<(), Failure> {
     let (Some(soft), Some(hard)) = (rows.first(), rows.last()) else { return Ok(()) };
     let between = rows.iter().map(|row| row.contacts).max().unwrap_or(0);
     study.text(&format!(
-        "Stiffness k C² m T over a linear spring; contacts up to t = {UNTIL} T. The softest ({}) leaves after {} contact, \
-         the hardest ({}) stays after {}, between there are up to {between}.",
+        "The contact is a linear spring of the dimensionless stiffness k C² m T, and the motion is followed up to t = \
+         {UNTIL} T. With the softest spring ({}) the body leaves after {} contact, with the hardest ({}) it stays in \
+         contact after {}, and between them there are up to {between} contacts.",
         significant(soft.stiffness, 2),
         soft.contacts,
         significant(hard.stiffness, 2),
         hard.contacts
     ));
     study.state(Statement::trend(
-        "contacts of the softest and of the hardest linear spring together",
+        "sum of the contacts of the softest and of the hardest linear spring",
         "2.1",
         "identifying single contact at two extremes",
         (2.0, 2.0),
@@ -165,7 +166,7 @@ fn late_contacts(study: &mut Study) -> Result<(), Failure> {
         let numbers = [forces[k], durations[k]].map(|number| significant(number, 4));
         [vec![(k + 1).to_string()], numbers.to_vec()].concat()
     };
-    study.text("At S = 2:");
+    study.text("The forces and durations of the contacts at S = 2 are:");
     study.table(&["contact", "largest force (F)", "duration (T)"], &(0..durations.len()).map(line).collect::<Vec<_>>());
     // the first contact differs from the later ones, since the beam is at rest before it
     let logs = |values: &[f64]| values.iter().skip(1).map(|value| value.ln()).collect::<Vec<f64>>();
@@ -205,7 +206,7 @@ const LATE: usize = 10;
 
 /// Section 2.3: the time to the second contact grows without bound towards the critical `S`.
 fn second_contact(study: &mut Study) -> Result<(), Failure> {
-    study.section("The second contact's time near the critical S");
+    study.section("The time of the second contact near the critical S");
     let critical = critical_s().s;
     let distances = in_ratio(1e-3, 1e-1, 5);
     let times = study.sweep(&distances, 1, |distance| {
@@ -218,12 +219,12 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
         .map(|(d, [second, late])| vec![significant(*d, 2), significant(*second, 5), significant(*late, 5)])
         .collect();
     study.table(
-        &["S less its critical value", "start of the second contact (T)", &format!("of contact {LATE} (T)")],
+        &["S minus its critical value", "start of the second contact (T)", &format!("of contact {LATE} (T)")],
         &lines,
     );
     let power = |k: usize| (times[1][k] / times[0][k]).ln() / (distances[1] / distances[0]).ln();
     study.state(Statement::identity(
-        "power of the distance from the critical S with which the second contact's time goes",
+        "power of the distance from the critical S in the time of the second contact",
         [
             "2.3",
             "as S → 1.56⁺, the time interval between subsequent impacts increases without bound",
@@ -233,7 +234,7 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
         power(0),
     ));
     study.state(Statement::trend(
-        format!("the same power for contact {LATE}"),
+        format!("power of the distance from the critical S in the time of contact {LATE}"),
         "2.5",
         "all the contact-time curves approach the same vertical asymptote at S ≈ 1.56",
         FALLS,

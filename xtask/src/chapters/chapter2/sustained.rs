@@ -113,17 +113,22 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     for row in left.into_iter().zip(right) {
         figure = figure.row([row.0, row.1]);
     }
-    study.figure("fig-2-07", &figure, "z, contact force, and compression y - z. Left S = 15, right S = 10⁵.")?;
+    study.figure(
+        "fig-2-07",
+        &figure,
+        "Displacement z, contact force and compression y - z, on the left for S = 15 and on the right for S = 10⁵.",
+    )?;
     let figure = Figure::new("Error of the asymptotic solution, Eq. 2.47").row([errors]);
     study.figure(
         "asymptotic-errors",
         &figure,
-        "The displacement is good once contact lasts, whatever happened before; the compression only after its \
-         oscillations have died down.",
+        "The displacement is accurate as soon as contact is sustained, whatever happened before. The compression is \
+         accurate only after its oscillations have decayed.",
     )?;
     study.text(
-        "Largest relative errors over ranges of time: the displacement by Eq. 2.47, by the exact motion of a body that \
-         is attached to the beam from the first touch on, and the compression that Eq. 2.47 implies.",
+        "The table has the largest relative errors over ranges of time: of the displacement by Eq. 2.47, of the \
+         displacement by the exact motion of a body that is attached to the beam from the first touch on, and of the \
+         compression that follows from Eq. 2.47.",
     );
     study.table(&["S", "time", "z, Eq. 2.47", "z, attached", "y - z, Eq. 2.47"], &table);
     Ok(())

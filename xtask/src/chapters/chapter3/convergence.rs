@@ -104,7 +104,7 @@ fn pair(
         figure,
         title,
         &columns,
-        "Above: net restitution; below: number of sub-impacts; both against the number of modes kept.",
+        "Net restitution (top) and number of sub-impacts (bottom) against the number of retained modes.",
     )
 }
 
@@ -150,14 +150,14 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
         ratios.iter().filter(|(speed, _)| chosen(*speed)).map(|(_, ratio)| *ratio).fold(0.0, f64::max)
     };
     study.state(Statement::trend(
-        "that ratio at 0.25 m/s minus the larger of those at 0.5 and 0.1 m/s",
+        "scatter of e, damped over undamped, at 0.25 m/s minus the larger of those at 0.5 and 0.1 m/s",
         "3.4.2, Fig. 3.13",
         "for the 0.25 m/s case the convergence appears relatively a little slower",
         RISES,
         "any amount",
         of(&|speed| speed == 0.25) - of(&|speed| speed != 0.25),
     ));
-    study.figure("fig-3-13", &figure.width(960.0), "A ball of 3 cm at three speeds.")?;
+    study.figure("fig-3-13", &figure.width(960.0), "The ball of 3 cm at three speeds.")?;
     study.csv("fig-3-13.csv", &rows_of(&columns))
 }
 
@@ -175,7 +175,8 @@ fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
         "3.14",
         "Other balls, b = 0.618 m",
         &columns,
-        "Left: 4 cm; right: 2 cm. The small ball leaves before the beam comes back: one contact, with or without damping.",
+        "Balls of 4 cm (left) and 2 cm (right). The small ball leaves before the beam springs back, so that there is \
+         one contact, with and without damping.",
     )?;
 
     let [large, small] = [&columns[0].1, &columns[1].1];
@@ -236,7 +237,8 @@ fn heavy(study: &mut Study, case: &Case, of_4_cm: &[Row]) -> Result<(), Failure>
         off_the_mean(&rows, OFF) as f64,
     );
     study.state(statement.note(format!(
-        "Of the 4 cm ball {} are. {:.1} kg on a beam of 1 kg: restitution {:.3} with {} modes, in {} sub-impacts.",
+        "For the 4 cm ball {} are. The 20 cm ball has {:.1} kg and the beam 1 kg; its restitution is {:.3} with {} \
+         modes, after {} sub-impacts.",
         off_the_mean(of_4_cm, OFF),
         ball.mass_kg,
         rows.last().map_or(f64::NAN, Row::e),
@@ -273,7 +275,11 @@ fn scan(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let axis = Axis::new("location b").unit("m").limits(scan.from_m - 4e-4, scan.to_m + 4e-4);
     let figure =
         restitution_and_sub_impacts("Fig. 3.15  A ball of 4 cm, N = 40, ζ = 0.02", &axis, |r| r.location_m, &columns);
-    study.figure("fig-3-15", &figure.width(560.0), "Above: restitution; below: sub-impacts; against the location.")?;
+    study.figure(
+        "fig-3-15",
+        &figure.width(560.0),
+        "Restitution (top) and number of sub-impacts (bottom) against the location.",
+    )?;
     study.state(Statement::trend(
         "change of e for b from 0.60 to 0.62 m, 4 cm ball",
         "3.4.2, Fig. 3.15",

@@ -62,9 +62,9 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.figure(
         "fig-3-02",
         &figure,
-        "ξ = sin 2πt + 0.5 sin 8πt with k_H = 1, K = 4, θ_m = 1.6, β = 1.4, ε = 10⁻⁴, in the \
-        reading of Eq. 3.17 that the contact law's documentation gives. The force vanishes only where ξ ≤ 0, and minor \
-        loops close inside the large ones.",
+        "The compression is ξ = sin 2πt + 0.5 sin 8πt, with k_H = 1, K = 4, θ_m = 1.6, β = 1.4 and ε = 10⁻⁴. Eq. 3.17 \
+         is read as the documentation of the contact law explains. The force vanishes only where ξ ≤ 0, and minor \
+         loops close inside the large ones.",
     )?;
 
     let silent = |r: &&LoopRow| r.force_n == 0.0;
@@ -81,7 +81,7 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let theta = pressed.map(|r| r.force_n / (p.stiffness_n_m1_5.unwrap_or(1.0) * r.compression_m.powf(1.5)) - 1.0);
     let beyond = theta.map(|theta| (theta - p.theta_m).abs() - p.beta).fold(f64::NEG_INFINITY, f64::max);
     study.state(Statement::identity(
-        "farthest that θ leaves θ_m ± β, hysteretic law (Fig. 3.2)",
+        "largest distance of θ from the range θ_m ± β, hysteretic law (Fig. 3.2)",
         ["3.2.1", "θ varies between θ_m ± β", "rounding"],
         (f64::NEG_INFINITY, 1e-9),
         beyond,
@@ -117,7 +117,7 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
     study.figure(
         &format!("fig-{}", slug(figure)),
         &Figure::new(title).row([panel]).width(520.0),
-        "Loading runs along the upper branch, unloading along the lower; the area between is the energy lost.",
+        "Loading follows the upper branch and unloading the lower one. The area between them is the dissipated energy.",
     )?;
 
     let at_one = Setup { law, ..case.setup(case.golden_m(), 0) }.solve()?;

@@ -33,7 +33,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         .row([closer]);
     let e = solution.restitution.unwrap_or(f64::NAN);
     let caption = format!(
-        "{} sub-impacts, the last one ends after {:.2} ms; restitution {e:.3}.",
+        "There are {} sub-impacts, of which the last one ends after {:.2} ms. The restitution is {e:.3}.",
         solution.sub_impacts.len(),
         1e3 * solution.end_s
     );
@@ -55,7 +55,8 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
     };
     study.state(few_hundred("median", median));
     study.state(
-        few_hundred("largest", largest).note("The first contact is the hardest; the thesis's phrase fits the others."),
+        few_hundred("largest", largest)
+            .note("The first contact is the hardest; the wording of the thesis fits the others."),
     );
     study.state(Statement::trend(
         "sub-impacts, N = 25, b = 0.4",
@@ -80,9 +81,9 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         bend_mm / height_mm,
     );
     study.state(statement.open((0.0, 0.1)).note(format!(
-        "The longest flight lasts {:.1} ms. Over the whole interaction gravity would change the ball's velocity, \
-         {:.2} m/s at the end, by {:.2} m/s, if the ball falls on the beam; level flight against an upright beam, of which the \
-         text speaks next, is free of that.",
+        "The longest flight lasts {:.1} ms. Over the whole interaction gravity would change the ball's velocity, {:.2} \
+         m/s at the end, by {:.2} m/s, if the ball falls on the beam. A horizontal flight against an upright beam, \
+         which the text mentions next, is not affected.",
         1e3 * longest_s,
         solution.striker_velocity_m_s,
         GRAVITY * solution.end_s
@@ -143,8 +144,8 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
         .row([panel("(d) contact force", Axis::new("F").unit("N"), &|c| &c.force_n, 1.0)]);
     let e: Vec<f64> = found.iter().map(|(solution, _)| solution.restitution.unwrap_or(f64::NAN)).collect();
     let caption = format!(
-        "Restitution {:.3} without and {:.3} with damping. Between sub-impacts the damped beam's fast motion dies away; \
-         the undamped beam's goes on, and the next contact depends on its phase.",
+        "The restitution is {:.3} without and {:.3} with damping. The fast vibration of the damped beam decays between \
+         sub-impacts. That of the undamped beam continues, and the next contact depends on its phase.",
         e[0], e[1]
     );
     study.figure("fig-3-12", &figure, &caption)?;
@@ -177,7 +178,7 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.figure(
         "fig-a-02",
         &Figure::new("Fig. A.2  Energy of single modes, N = 40, b = 0.618 m").row(panels),
-        "Each contact shows as a jump. Damping empties the high modes between contacts.",
+        "The energy jumps at each contact. Damping removes the energy of the high modes between contacts.",
     )?;
     study.state(Statement::identity(
         "energy of mode 40 at the end, damped over undamped",

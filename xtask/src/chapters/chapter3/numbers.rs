@@ -38,9 +38,9 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let linear_s = PI * (case.ball.mass_kg / case.ball.stiffness_n_m1_5).sqrt();
     let slip = (1.0 / (frequency(1) * linear_s)).sqrt();
     let note = format!(
-        "The ball on an immovable beam is in contact for {:.3} ms, and the period of mode {slower} is the last one that \
-         is longer. With k_H read as N/m the contact would last π √(m/k_H) = {:.4} ms, and √(T₁/(π √(m/k_H))) = {slip:.1} \
-         is the number of the text.",
+        "The ball is in contact with an immovable beam for {:.3} ms, and mode {slower} is the last one with a longer \
+         period. With k_H in N/m the contact would last π √(m/k_H) = {:.4} ms, and √(T₁/(π √(m/k_H))) = {slip:.1} is \
+         the number of the text.",
         1e3 * contact_s,
         1e3 * linear_s
     );

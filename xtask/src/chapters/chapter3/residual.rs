@@ -8,17 +8,17 @@ use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 
-const MEANING: &str = "Modes beyond the N kept move too fast to vibrate much during a contact: they answer nearly as a spring. \
-Leaving them out makes the beam too stiff where the ball presses on it, by the residual compliance \
-c = G(b,b) − Σ φ_k²/ω_k², where G is the static compliance of the whole beam. The omission is small, but through the \
-chain of sub-impacts a small change of the first contact changes all that follow. Two remainder modes, which have c and \
-the next three moments of what is left out, mend it. With them the damped restitution settles to a number that plain truncation approaches \
-only slowly; and the undamped restitution, which plain truncation leaves scattered as far as N = 400, settles too, \
-only later. Much of the scatter that the chapter ascribes to missing damping is therefore the stiffness that \
-truncation adds. What damping does is to reduce the number of modes that are needed.";
+const MEANING: &str = "The truncated modes are so fast that they hardly vibrate during a contact and respond nearly as \
+a spring. Without them the beam is too stiff at the contact, by the residual compliance c = G(b,b) − Σ φ_k²/ω_k², \
+where G is the static compliance of the whole beam. This error is small, but a small change of the first contact \
+changes all contacts that follow. Two remainder modes, which have the compliance c and the next three moments of the \
+truncated modes, remove the error. With them the damped restitution converges to a number that plain truncation \
+approaches only slowly. The undamped restitution, which still scatters at N = 400 with plain truncation, converges \
+too, with more modes. Much of the scatter that the chapter ascribes to missing damping is therefore due to the \
+stiffness that truncation adds. Damping reduces the number of modes that are needed.";
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
-    study.section("The modes left out: remainder modes, to N = 400");
+    study.section("Remainder modes for the truncated modes, up to N = 400");
     study.text(MEANING);
     let counts = study.thin(&case.parameters.our_choice.residual_modes, 7);
     let zeta = case.parameters.damping_ratio;
@@ -49,11 +49,11 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         let file = format!("residual-compliance-{name}");
         let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
         study.csv(&format!("{file}.csv"), &rows)?;
-        let caption = "Blue: the modes kept and nothing else, as in the thesis. Red: the same modes, and two \
-                       remainder modes for all others.";
+        let caption = "Blue: the retained modes alone, as in the thesis. Red: the same modes with two remainder modes \
+                       for all others.";
         study.figure(&file, &figure, caption)?;
     }
-    study.text("Spread: largest less smallest restitution over the numbers of modes from 80 or 200 on.");
+    study.text("The spread is the largest minus the smallest restitution over the numbers of modes from 80 or 200 on.");
     study.table(
         &["damping", "location (m)", "remainder modes", "e at most modes", "spread, N ≥ 80", "spread, N ≥ 200"],
         &table,

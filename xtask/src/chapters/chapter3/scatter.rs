@@ -137,7 +137,7 @@ pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
         needed(modal),
     ));
     study.state(Statement::loose(
-        "modes that suffice with damping, by the same reading",
+        "modes that suffice with damping, to within 0.05 as above",
         "3.5",
         "the first 30 to 40 modes may be sufficient in the presence of small damping",
         (35.0, 5.0),
@@ -206,8 +206,8 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
     let net = longest.map_or(f64::NAN, |row| row.last_separation_s);
     let statement = Statement::printed("longest net time of the impacts of Fig. 3.4 (s)", "3.3.2", "0.025", net);
     study.state(statement.note(format!(
-        "The text does not say which impact its 0.025 s are of; the longest is the one with {} modes at b = {} m, and Fig. 3.3 \
-         shows N = 25 at 0.4 m.",
+        "The text does not say to which impact its 0.025 s belong. The longest one has {} modes at b = {} m, and Fig. \
+         3.3 shows N = 25 at 0.4 m.",
         longest.map_or(0, |row| row.modes),
         longest.map_or(f64::NAN, |row| row.location_m)
     )));

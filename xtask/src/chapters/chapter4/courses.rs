@@ -50,7 +50,7 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.figure(
         "fig-4-05",
         &figure.width(860.0),
-        "Each case from above: displacements, velocities, contact force.",
+        "Displacements, velocities and contact force of each case, from top to bottom.",
     )?;
     for (course, letter) in courses.iter().zip(letters) {
         study.csv(&format!("fig-4-05-{letter}.csv"), &course.rows())?;
@@ -77,6 +77,7 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
     study.figure(
         &format!("fig-{}", slug(&p.figure)),
         &figure,
-        "Beam at the contact and ball. The more compliant the location, the deeper the beam yields.",
+        "Displacements of the ball and of the beam at the contact. The more compliant the location is, the further the \
+         beam is displaced.",
     )
 }

@@ -67,8 +67,9 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     sorted.sort_by(f64::total_cmp);
     let median = sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN);
     let caption = format!(
-        "At the nodes of the finite elements; the clamped node, where the ball meets a rigid wall, is left out. Largest \
-         difference {}, median {}. The upper half of the frequencies of the finite elements is too high, as always.",
+        "Restitution at the nodes of the finite elements, except for the clamped node, where the ball meets a rigid \
+         wall. The largest difference is {}, the median {}. The upper half of the frequencies of the finite elements \
+         is too high, as is usual.",
         significant(largest, 2),
         significant(median, 2)
     );
@@ -111,7 +112,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     )
     .uncertain(ratio * weak.1.hypot(elsewhere.1));
     study.state(statement.note(format!(
-        "{} of {} impacts are so weak; the balls are the three whose masses chapter 4 names.",
+        "In {} of {} impacts e is so small. The balls are the three whose masses chapter 4 states.",
         all.iter().filter(|(modal, _)| modal.e() <= WEAK).count(),
         all.len()
     )));

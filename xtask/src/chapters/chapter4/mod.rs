@@ -14,12 +14,12 @@ use case::Histories;
 pub(super) use case::{Case, EnsembleChoice};
 use tasks::Failure;
 
-const INTRODUCTION: &str = "Steel balls strike four steel beams, all of 1 m length and lightly damped (2 % of critical \
-damping in every mode), with 40 modes and Hertzian contact. The tables `restitution-*.csv` hold the net restitution of \
-every ball at every place; chapter 7 fits its model to them. The thesis does not print where its stepped beams have \
-their step, how thin the slim part is, or the list of balls: here the step is half way, the slim part has half the \
-thickness, and the balls are 9 to 53 mm in steps of 4 mm, which contains every mass that the chapter names. These are \
-our choices (`datasets/chapter4.json`), so the figures of the stepped beams can be compared in kind only.";
+const INTRODUCTION: &str = "Steel balls strike four steel beams of 1 m length with 40 modes and Hertz contact. Every \
+mode has 2 % of critical damping. The tables `restitution-*.csv` have the net restitution of every ball at every \
+location; chapter 7 fits its model to them. The thesis states neither the position of the steps, nor the thickness of \
+the slim parts, nor the list of balls. Here the step is at half the length, the slim part has half the thickness, and \
+the balls have 9 to 53 mm in steps of 4 mm, so that the list contains every mass that the chapter states. These are \
+our choices (`datasets/chapter4.json`), so the figures of the stepped beams can only be compared qualitatively.";
 
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {

@@ -30,9 +30,9 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
     let coarser = compute(study, case, coarse, true)?;
     let reference = compute(study, case, fine, true)?;
     study.text(&format!(
-        "Reference: {fine} modes with remainder modes for all others. The difference \
-         from the same model with {coarse} modes shows how far the reference itself has converged. Differences of the \
-         restitution over all locations and balls:"
+        "The reference has {fine} modes with remainder modes for all others. Its difference from the same model with \
+         {coarse} modes shows how far it has converged. The table has the differences of the restitution over all \
+         locations and balls."
     ));
 
     let (mut rows, mut panels) = (Vec::new(), Vec::new());
@@ -62,7 +62,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
     for pair in panels.chunks(2) {
         figure = figure.row(pair.to_vec());
     }
-    study.figure("settled", &figure, "Absolute difference of the restitution for each location and ball.")
+    study.figure("settled", &figure, "Absolute value of the difference for each location and ball.")
 }
 
 fn settled_row([truncated, residual, coarser, reference]: [&Row; 4]) -> SettledRow {

@@ -39,8 +39,8 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let axis = Axis::new("speed of the ball").unit("m/s").log();
     let title = format!("Fig. 4.3  {}, m = {:.3} kg, N = 40", beam.title, ball.mass_kg);
     let figure = restitution_and_sub_impacts(&title, &axis, |r| r.speed_m_s, &columns);
-    let caption = "Above: restitution; below: sub-impacts; against the speed of the ball. The step and the locations are \
-                   our choice, so the thesis's small effect can be looked for in kind only.";
+    let caption = "Restitution (top) and number of sub-impacts (bottom) against the speed of the ball. The step and \
+                   the locations are our choice, so the small effect of the speed can only be compared qualitatively.";
     study.figure("fig-4-03", &figure.width(620.0), caption)?;
     study.csv("fig-4-03.csv", &found.concat())?;
     let mut lines = Vec::new();
@@ -52,8 +52,9 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
         lines.push(vec![format!("{location} m"), significant(own, 3), significant(change, 2)]);
     }
     study.text(
-        "The footnote of 4.1 says that changing the speed up or down by a factor of 15 has only a small effect. For our \
-         step and locations (the ensemble counts how often it holds):",
+        "The footnote of 4.1 states that changing the speed up or down by a factor of 15 has only a small effect. The \
+         table has this change for our step and locations; the ensemble counts in how many choices the statement \
+         holds.",
     );
     study.table(&["location", "e at 1 m/s", "largest change of it, 1/15 to 15 m/s"], &lines);
     Ok(())
@@ -85,7 +86,7 @@ fn modes(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.figure(
         "fig-4-04",
         &figure.width(960.0),
-        "Above: restitution; below: sub-impacts; against the number of modes, without and with damping.",
+        "Restitution (top) and number of sub-impacts (bottom) against the number of modes, without and with damping.",
     )?;
     let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
     study.csv("fig-4-04.csv", &rows)

@@ -97,8 +97,8 @@ pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>
     for (table, number) in tables.iter().zip(6..) {
         let rows: Vec<Row> = table.all().cloned().collect();
         study.csv(&format!("restitution-{}.csv", table.beam.name), &rows)?;
-        let caption = "Above: restitution and number of sub-impacts over location and ball. Below: restitution of every other \
-                       ball along the beam.";
+        let caption = "Top: restitution and number of sub-impacts over location and ball. Bottom: restitution of every \
+                       other ball along the beam.";
         study.main_figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
     }
     Ok(tables)

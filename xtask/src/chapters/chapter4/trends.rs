@@ -219,9 +219,9 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
 pub(super) fn tell(study: &mut Study, tables: &[Table]) {
     study.section("The trends of section 4.2 for our choice");
     study.text(
-        "The thesis does not print its steps, slim parts and balls, so that what holds for ours says little alone. These \
-         numbers are therefore not counted among the statements; `cargo xtask reproduce-chapter ensemble` says in how many \
-         of the plausible choices each trend holds.",
+        "The thesis does not state its steps, slim parts and balls, so that a trend for our choice alone has little \
+         significance. These numbers are therefore not counted among the statements; `cargo xtask reproduce-chapter \
+         ensemble` counts in how many plausible choices each trend holds.",
     );
     let line = |(table, trend): (&Table, Trend)| {
         let holds = if trend.holds() { "holds" } else { "does not hold" };

@@ -75,9 +75,10 @@ fn two_bodies(study: &mut Study) -> Result<(), Failure> {
         &lines,
     );
     study.text(
-        "A rod of 1 kg and 1 m meets a ball of 0.5 kg with one end, at 57° to its surface, at 1 m/s along the normal. The \
-         impulse changes the relative velocity of the contact points by W P, with W the inverse of the inertia M_C of \
-         Eq. 5.1; W has tangential entries, so that a normal impulse alone makes the ends slide.",
+        "One end of a rod of 1 kg and 1 m meets a ball of 0.5 kg at 1 m/s along the normal; the rod is inclined at 57° \
+         to the surface. The impulse P changes the relative velocity of the contact points by W P, where W is the \
+         inverse of the inertia M_C of Eq. 5.1. W has tangential entries, so that a normal impulse alone makes the \
+         ends slide.",
     );
     study.state(Statement::identity(
         "largest |Δv_C − M_C⁻¹ P| of six impacts of two bodies (m/s)",
@@ -86,7 +87,7 @@ fn two_bodies(study: &mut Study) -> Result<(), Failure> {
         worst,
     ));
     study.state(Statement::identity(
-        "largest gain of energy in them (J)",
+        "largest gain of energy in six impacts of two bodies (J)",
         ["5.2.2", "the post-impact kinetic energy should not exceed the pre-impact kinetic energy", "rounding"],
         (f64::NEG_INFINITY, 1e-12),
         gained,
@@ -150,20 +151,20 @@ fn rod_on_a_table(study: &mut Study) -> Result<(), Failure> {
     study.figure(
         "fig-5-01",
         &Figure::new("Fig. 5.1  A ball falls at 1 m/s on one end of a rod").row([impulse, speed]).width(860.0),
-        "As an equality Newton's rule keeps the right end on the table, which would have to pull it down; the inequality \
-         lets it rise.",
+        "Newton's rule as an equality keeps the right end on the table, which would have to pull it down. The \
+         inequality lets it rise.",
     )?;
     let largest = |values: Vec<f64>| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
     study.state(Statement::identity(
         "largest impulse of the table that v_f = −e v_i demands, ball from 0.01 to 100 of the rod's mass (N s)",
-        ["5.2.1, Fig. 5.1", "since v_i,n = 0, no finite e can model the impact", "a table does not pull"],
+        ["5.2.1, Fig. 5.1", "since v_i,n = 0, no finite e can model the impact", "a table cannot pull"],
         (f64::NEG_INFINITY, 0.0),
         largest(column(|row| row.impulse_by_equality_n_s)),
     ));
     study.state(Statement::identity(
         "least speed at which the right end rises under the inequality, LCP and least energy (m/s)",
-        ["5.2.1, Fig. 5.1", "new separation at a pre-existing stationary contact", "it parts"],
+        ["5.2.1, Fig. 5.1", "new separation at a pre-existing stationary contact", "the end separates from the table"],
         (0.0, f64::INFINITY),
         least(column(|row| row.right_end_lcp_m_s.min(row.right_end_least_energy_m_s))),
     ));

@@ -180,12 +180,12 @@ pub(super) fn run(study: &mut Study, data: &[Dataset]) -> Result<Vec<Found>, Fai
     }
     study.csv("laws.csv", &rows)?;
     let names: Vec<&str> = data.iter().map(|data| data.beam.name.as_str()).collect();
-    study.table(&[&["law", "formula", "fitted numbers a beam"], names.as_slice(), &["all"]].concat(), &lines);
+    study.table(&[&["law", "formula", "fitted parameters per beam"], names.as_slice(), &["all"]].concat(), &lines);
     study.text(
-        "Root-mean-square difference between law and table. One impulse cannot reverse a ball that is heavier than what of \
-         the beam answers at once (Z > 1): the law lets it go on into the beam, where in truth further sub-impacts throw \
-         it back. Least energy without an outward constraint has the ball and the beam move on together. Clipping, and \
-         Eq. 6.6 alone, mend the sign and not the rebound.",
+        "The table has the root-mean-square difference between law and table. A single impulse cannot reverse a ball \
+         that is heavier than the part of the beam that responds at once (Z > 1): by the law the ball would move on \
+         into the beam, while in fact further sub-impacts throw it back. With least energy and no outward constraint \
+         ball and beam move on together. Clipping, and Eq. 6.6 alone, correct the sign but not the rebound.",
     );
     claims(study, data, &found, &rows)?;
     Ok(found)

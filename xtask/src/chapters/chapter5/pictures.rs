@@ -55,7 +55,7 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], found: &[Found]) -> Resul
     study.main_figure(
         "laws",
         &figure,
-        "Every fifth impact of the four tables is a point; on the grey line law and table are equal. Below zero the ball would go \
-         on into the beam.",
+        "The points are every fifth impact of the four tables. On the grey line law and table are equal. A negative \
+         restitution means that the ball would move on into the beam.",
     )
 }

@@ -13,11 +13,11 @@ use tasks::{Failure, Random};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
-const INTRODUCTION: &str = "Problem P₀ (least kinetic energy under the inequalities 6.5 to 6.7) is solved in four forms: \
-in closed form (proof in `docs/emoc-closed-form.md`); as the quadratic program P₁ of section 6.3 in 2N+1 variables; in \
-its reduced form in two variables; and, for few modes, with all 2ᴺ choices of signs that section 6.4 uses for its proof \
-of uniqueness, by trying every set of active rows. Random and degenerate cases, all from one seed. Then the \
-inequalities are held against impacts of chapter 4, resolved in time.";
+const INTRODUCTION: &str = "Problem P₀ (least kinetic energy under the inequalities 6.5 to 6.7) is solved in four \
+forms: in closed form (proof in `docs/emoc-closed-form.md`); as the quadratic program P₁ of section 6.3 in 2N+1 \
+variables; in its reduced form in two variables; and, for few modes, with all 2ᴺ choices of signs that section 6.4 \
+uses for its proof of uniqueness, by enumeration of all sets of active rows. The cases are random and degenerate ones, \
+all from one seed. The inequalities are then compared with impacts of chapter 4 that are resolved in time.";
 
 fn one_in(random: &mut Random, n: f64) -> bool {
     random.range(0.0, n) < 1.0
@@ -253,17 +253,18 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
             ));
         }
     }
-    study.table(&["form beside the closed one", "cases", "number", "largest difference of e"], &lines);
+    study.table(&["form compared with the closed one", "cases", "number", "largest difference of e"], &lines);
     study.text(
-        "With β₁ = 1 more rows are active at the minimum than there are unknowns; at the kink a multiplier vanishes; \
-         shapes of 1e-9 leave P₁ next to singular. No active set then proves the interior-point method's result, and what \
-         shows is its own floor, up to some 1e-8, not one of the closed form: the enumeration agrees with that to 1e-13.",
+        "With β₁ = 1 more rows are active at the minimum than there are unknowns. At the kink a multiplier vanishes, \
+         and with shapes of 1e-9 P₁ is nearly singular. In these cases no active set proves the result of the \
+         interior-point method, and the differences of up to 1e-8 are its accuracy floor. They are not errors of the \
+         closed form, with which the enumeration agrees to 1e-13.",
     );
     study.figure(
         "agreement",
         &Figure::new("Difference of the restitution from the closed form").row([panel]),
-        "Every case that differs by more than 10⁻¹⁴, and one in eight of the others; what agrees to the last bit stands at \
-         1.5×10⁻¹⁷.",
+        "The figure shows every case that differs by more than 10⁻¹⁴ and one in eight of the others. Cases that agree \
+         to the last bit are drawn at 1.5×10⁻¹⁷.",
     )
 }
 
@@ -286,10 +287,10 @@ fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(),
     let lowest = rows.iter().map(|row| row.restitution).fold(f64::INFINITY, f64::min);
     study.state(Statement::identity("least restitution", ["6.2, item 3", "v_f ≥ 0", "as stated"], (0.0, 1.0), lowest));
     study.text(&format!(
-        "If the energy of every other feasible point exceeds that of a solution by at least its squared distance, in the \
-         norm of the energy, the solution is the only minimum, and for a minimum over a convex set it must. {TRIALS} random feasible \
-         points a case, near and far, bear it out. The feasible point v_f = ē, a_k' = 0 shows that at most ē² of the \
-         energy is left."
+        "A solution is the only minimum if the energy of every other feasible point exceeds its energy by at least the \
+         squared distance in the norm of the energy. At a minimum over a convex set this must hold, and {TRIALS} \
+         random feasible points per case, near and far, confirm it. The feasible point v_f = ē, a_k' = 0 shows that at \
+         most the share ē² of the energy is left."
     ));
     let mut panel = Panel::new(Axis::new("moderated mass ratio Z").log().limits(1e-4, 1e6), Axis::new("E/E₀ over ē²"));
     panel.height_px = 200.0;
@@ -302,7 +303,7 @@ fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(),
     study.figure(
         "energy",
         &Figure::new("Energy left, as a share of its bound").row([panel]),
-        "One in three of the random cases, by the term of the maximum that is active.",
+        "The figure shows one in three of the random cases. Colours distinguish the active term of the maximum.",
     )
 }
 
@@ -325,6 +326,7 @@ fn shape(study: &mut Study) -> Result<(), Failure> {
     study.main_figure(
         "closed-form",
         &Figure::new("e = ē max(1/(1+Z), (β₀+β₁)/(1+β₀))").row([left, right]).width(900.0),
-        "The outward inequality sets a floor under the restitution; below it the modes would swallow a heavy striker.",
+        "The outward inequality is a lower limit to the restitution. Without it the modes would take up all the energy \
+         of a heavy striker.",
     )
 }

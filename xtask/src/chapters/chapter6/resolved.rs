@@ -110,10 +110,10 @@ fn outward(study: &mut Study, case: &Case, rows: &[Row]) -> Result<(), Failure> 
     }
     study.table(&["beam", "resolved impacts", "Eq. 6.6 holds in", "Eq. 6.7 holds in"], &lines);
     study.text(
-        "With the parameters fitted to these impacts of each beam. The bound 6.3 is a theorem and holds in all; 6.6 and 6.7 \
-         are modelling choices, of which the thesis says that there is no a priori reason to be sure that they are \
-         physically accurate (7.2). At the end of a resolved impact the contact points part more slowly than 6.6 demands, \
-         because the separations of many sub-impacts have spread the speed over the modes.",
+        "The parameters are fitted to these impacts of each beam. The bound 6.3 is a theorem and holds in every \
+         impact. The inequalities 6.6 and 6.7 are modelling choices, and the thesis states that there is no a priori \
+         reason to be sure that they are physically accurate (7.2). At the end of a resolved impact the contact points \
+         separate more slowly than 6.6 requires, because many sub-impacts have spread the speed over the modes.",
     );
     Ok(())
 }

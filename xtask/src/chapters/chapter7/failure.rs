@@ -26,27 +26,26 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Resu
     let figure = panels
         .chunks(2)
         .fold(Figure::new("Restitution of the law minus that of the table").width(960.0), |f, row| f.row(row.to_vec()));
-    study.figure("where-it-fails", &figure, "Blue: the law rebounds too little; red: too much.")?;
+    study.figure("where-it-fails", &figure, "Blue: the restitution of the law is too small. Red: it is too large.")?;
     study.table(
         &["beam", "rms", "balls to 0.05 kg", "balls above 0.2 kg", "basic branch", "share of it", "irregularity"],
         &rows,
     );
     study.text(
-        "Rms of the difference, over all and over parts of each table. The irregularity is the rms difference between a \
-         value of the table and the mean of its four neighbours (next places, next balls), divided by √1.25: what no law \
-         that varies smoothly with place and mass can follow.\n\n\
-         The closed form e = ē max(1/(1+Z), (β₀+β₁)/(1+β₀)) says what can be expressed:\n\n\
-         - **Light balls.** They touch once and leave before the fast modes have answered; the rebound depends on how \
-           many modes are slow against the contact. Z counts all N modes alike, whatever the ball, so that the same N \
-           has to serve contacts of 20 µs and of 200 µs. Z is large almost everywhere, the first term of the maximum is \
-           small, and the whole fall of e with the mass must come from the saturating β₀, whose shape is fixed.\n\
-         - **Heavy balls.** They end up riding on the beam and are thrown back by its slow motion. Of that only φ₁ is \
-           in the law. Near a held end, or near a node of the first mode, φ₁ vanishes while the ball still rides on a \
-           stiffer motion and rebounds with 0.3 to 0.6: there the law is lower than the table.\n\
-         - **Steps.** The mode that throws the ball back changes from place to place; the outward inequality knows \
-           only the first.\n\
-         - **ē** has the same value for t and 1/t, and is at least 2/3: it can be used as a factor for light balls \
-           or for heavy ones, which makes two minima of the sum of squares.",
+        "The table has the rms difference, over all and over parts of each table. The irregularity is the rms \
+         difference between a value of the table and the mean of its four neighbours (next locations, next balls), \
+         divided by √1.25. No law that varies smoothly with location and mass can represent it.\n\nThe closed form e = \
+         ē max(1/(1+Z), (β₀+β₁)/(1+β₀)) shows what the law can express:\n\n- **Light balls.** They touch once and \
+         leave before the fast modes have responded. The rebound depends on how many modes are slow compared with the \
+         contact. Z weights all N modes alike for every ball, so that the same N has to suit contacts of 20 µs and of \
+         200 µs. Z is large almost everywhere and the first term of the maximum is small. The whole decrease of e with \
+         the mass must therefore come from β₀, which saturates and whose shape is fixed.\n- **Heavy balls.** They \
+         finally move with the beam and are thrown back by its slow motion. The law represents this motion by φ₁ \
+         alone. Near a held end, or near a node of the first mode, φ₁ vanishes, while the ball still moves with a \
+         stiffer mode and rebounds with 0.3 to 0.6. There the law is lower than the table.\n- **Steps.** The mode that \
+         throws the ball back changes with the location, while the outward inequality contains only the first mode.\n- \
+         **ē** has the same value for t and 1/t, and is at least 2/3. It can serve as a factor for light balls or for \
+         heavy ones, so that the sum of squares has two minima.",
     );
     Ok(())
 }

@@ -94,7 +94,7 @@ pub(super) fn run(
     settled: &[Dataset],
     resolved_s: f64,
 ) -> Result<Vec<BeamFit>, Failure> {
-    study.section("Three parameters a beam (section 7.2)");
+    study.section("Three parameters per beam (section 7.2)");
     let (mut rows, mut cells, mut fits) = (Vec::new(), Vec::new(), Vec::new());
     let start = Instant::now();
     for (tables, name) in [(truncated, "N = 40"), (settled, "converged")] {
@@ -110,8 +110,8 @@ pub(super) fn run(
     quicker(study, &rows, seconds, resolved_s / truncated.iter().map(|data| data.rows.len()).sum::<usize>() as f64);
     let seconds = seconds / fits.len() as f64;
     study.remark(format!(
-        "A fit of the law to a beam's table takes {:.0} ms with all its {} searches; the thesis's took about ten minutes, \
-         and its resolved table ten hours.",
+        "A fit of the law to the table of a beam takes {:.0} ms with all its {} searches. In the thesis a fit took \
+         about ten minutes, and a resolved table ten hours.",
         1e3 * seconds,
         rows[0].starts
     ));
@@ -120,23 +120,26 @@ pub(super) fn run(
         &cells,
     );
     study.text(
-        "Parameters with 95 % intervals, which assume independent errors and are too narrow here; root-mean-square and \
-         largest difference of law and table. The sum of squares has several minima: of the starting points only some \
-         lead to the least one. A single search, as the thesis describes it, can end at the error in the last column.",
+        "The table has the parameters with 95 % intervals, and the root-mean-square and the largest difference of law \
+         and table. The intervals assume independent errors and are too narrow here. The sum of squares has several \
+         minima, and only some starting points lead to the least one. A single search, as the thesis describes it, can \
+         end at the error in the last column.",
     );
     study.csv("fits.csv", &rows)?;
     fits.truncate(truncated.len());
     let a_start = rows.iter().take(truncated.len()).map(|row| row.evaluations as f64 / row.starts as f64);
     study.state(
         Statement::loose(
-            "evaluations of the sum of squares a search, mean over the beams",
+            "evaluations of the sum of squares per search, mean over the beams",
             "7.2",
             "100 to 200 function evaluations",
             (150.0, 50.0),
             "as stated",
             a_start.sum::<f64>() / truncated.len() as f64,
         )
-        .missing("which search of fminunc, with differences for derivatives or not; ours is another method"),
+        .missing(
+            "which search of fminunc was used, and whether with differences for derivatives; ours is another method",
+        ),
     );
     for (data, found) in truncated.iter().zip(&fits) {
         held_ends(study, data, found);
@@ -202,7 +205,7 @@ fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<()
     }
     for (quantity, words, limits, ours) in [
         ("minimum of ē over e", "a minimum of 2/3", (2.0 / 3.0 - 1e-9, 2.0 / 3.0 + 1e-9), value),
-        ("μ₀ Z at it", "at Z = 1/μ₀", (0.995, 1.005), place),
+        ("μ₀ Z at the minimum of ē over e", "at Z = 1/μ₀", (0.995, 1.005), place),
     ] {
         study.state(Statement::identity(
             quantity,
@@ -277,7 +280,7 @@ pub(super) fn against_modes(study: &mut Study, data: &[Dataset]) -> Result<(), F
     study.main_figure(
         "fig-7-07",
         &Figure::new("Fig. 7.7  Error of the fit against the number of modes").row([panel]).width(760.0),
-        "Tables with N = 40. The rule marks N = 50, used everywhere else.",
+        "The tables have N = 40. The vertical line marks N = 50, which is used everywhere else.",
     )?;
     study.csv("fig-7-07.csv", &rows)
 }

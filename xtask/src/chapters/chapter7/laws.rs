@@ -172,13 +172,13 @@ struct AttachedRow {
 }
 
 pub(super) fn run(study: &mut Study, tables: [(&'static str, &Vec<Dataset>); 2]) -> Result<(), Failure> {
-    study.section("One beam from the others, and a better law");
+    study.section("Predictions of one beam from the others, and a more accurate law");
     study.text(
-        "Four laws. Z_w = m Σφₖ² exp(−(c ωₖτ)²) counts only modes that are slow against the contact, whose duration τ \
-         follows from Hertz's law for the ball on an immovable surface. ψⱼ are the modes of the beam with the ball's mass \
-         attached at the contact: after many sub-impacts a heavy ball rides on the beam, the share m ψⱼ² of its velocity \
-         rides on mode j and comes back half a period later; the largest share tells what the ball leaves with. No law \
-         integrates anything in time.",
+        "Four laws are compared. Z_w = m Σφₖ² exp(−(c ωₖτ)²) counts only modes that are slow compared with the \
+         contact, whose duration τ follows from Hertz's law for the ball on an immovable surface. ψⱼ are the modes of \
+         the beam with the mass of the ball attached at the contact. After many sub-impacts a heavy ball moves with \
+         the beam. The share m ψⱼ² of its velocity is in mode j and has the opposite sign half a period later. The \
+         largest share determines the velocity with which the ball leaves. No law integrates in time.",
     );
     let mut rows = Vec::new();
     for (table, sets) in tables {
@@ -207,7 +207,10 @@ pub(super) fn run(study: &mut Study, tables: [(&'static str, &Vec<Dataset>); 2])
 }
 
 fn show(study: &mut Study, table: &str, sets: &[Dataset], found: &[Evidence]) {
-    study.text(&format!("**Tables: {table}.** Rms difference, each beam fitted alone; all beams with one set; and each beam predicted from the other three."));
+    study.text(&format!(
+        "**Tables: {table}.** The columns have the rms difference of each beam fitted alone, of all beams with one set \
+         of parameters, and of each beam predicted from the other three."
+    ));
     let names = sets.iter().map(|set| set.beam.name.as_str());
     let headers: Vec<&str> = ["law", "formula", "parameters for all"]
         .into_iter()
@@ -233,7 +236,8 @@ fn show(study: &mut Study, table: &str, sets: &[Dataset], found: &[Evidence]) {
     };
     if let [thesis, .., attached] = found {
         study.text(&format!(
-            "Leave one beam out, the thesis's form: {}. With attached modes: {}. Largest error of all predictions: {} and {}.",
+            "The errors of the predicted beams are {} for the form of the thesis and {} with attached modes. The \
+             largest errors of all predictions are {} and {}.",
             each(thesis),
             each(attached),
             significant(thesis.predicted_all.max_abs, 3),
@@ -262,7 +266,7 @@ fn pictures(study: &mut Study, sets: &[Dataset], beams: &[Vec<Datum>], found: &[
         ];
         let title = format!("{}: c = {}, q = {}", set.beam.title, significant(p[0], 3), significant(p[1], 3));
         let name = format!("attached-modes-{}", set.beam.name);
-        study.figure(&name, &by_ball(&title, set, &curves), "Two laws over the table with N = 40.")?;
+        study.figure(&name, &by_ball(&title, set, &curves), "Both laws are shown with the table for N = 40.")?;
         for ((row, datum), e) in set.rows.iter().zip(beam).zip(&common) {
             rows.push(AttachedRow {
                 beam: row.beam.clone(),
@@ -276,13 +280,13 @@ fn pictures(study: &mut Study, sets: &[Dataset], beams: &[Vec<Datum>], found: &[
         }
     }
     study.text(&format!(
-        "The law with attached modes has two parameters in place of three, needs one set for all beams, and misses the \
-         tables by {} (rms) where the thesis's form, with the best set for all beams, misses them by {}. It contains the \
-         thesis's observations as limits: e = 1 at held points, where no mode moves; a fall with the mass as more modes \
-         are slow against the contact; a rise again as the ball comes to ride on one mode. It costs the attached modes, a \
-         scalar equation a mode, and it needs the frequencies and the duration of the contact, which the thesis's form \
-         leaves out on purpose. So the thesis's form stays the default of `emoc`; this law stands beside it. It has \
-         been tried on these four beams, one speed and Hertzian contact of steel balls only.",
+        "The law with attached modes has two parameters in place of three and needs one set for all beams. Its error \
+         is {} (rms), while that of the form of the thesis with the best set for all beams is {}. It contains the \
+         observations of the thesis as limits: e = 1 at held points, where no mode moves; a decrease with the mass as \
+         more modes are slow compared with the contact; and an increase as the ball moves with one mode. It requires \
+         the attached modes, one scalar equation for each, and the frequencies and the duration of the contact, which \
+         the form of the thesis leaves out on purpose. The form of the thesis is therefore the default of `emoc`. The \
+         law with attached modes was tested only on these four beams, at one speed, with Hertz contact of steel balls.",
         significant(attached.together.report.rms, 3),
         significant(thesis.together.report.rms, 3)
     ));

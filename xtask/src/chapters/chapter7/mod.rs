@@ -15,12 +15,12 @@ use std::time::Instant;
 use tasks::Failure;
 
 const INTRODUCTION: &str = "The law of energy minimisation under outward constraints (chapter 6, closed form) with the \
-three parameters μ₀, α₀, α₁ is fitted to the restitution tables of chapter 4, one set of parameters a beam. The law has \
-50 modes, the tables have 40, as in the thesis; a second set of tables, 100 modes with remainder modes for all \
-others, is what the same model settles to with more modes. The thesis does not print its \
-tables, its parameters, or where its stepped beams have their step, so errors can be compared in kind only. After the \
-thesis's own form the report asks where it fails and why, how one beam's parameters serve another, and sets a law with \
-two parameters beside it that does better on every count.";
+three parameters μ₀, α₀, α₁ is fitted to the restitution tables of chapter 4, with one set of parameters for each \
+beam. The law has 50 modes and the tables have 40, as in the thesis. A second set of tables, with 100 modes and \
+remainder modes for all others, has the converged restitutions of the same model. The thesis states neither its \
+tables, nor its parameters, nor the position of the steps, so errors can only be compared qualitatively. The report \
+then shows where the form of the thesis fails and why, and how well the parameters of one beam predict another. It \
+compares this form with a law of two parameters that is more accurate in every respect.";
 
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
@@ -30,7 +30,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     let truncated = compute(study, &case, case.parameters.modes, false)?;
     let seconds = start.elapsed().as_secs_f64();
     let settled = compute(study, &case, SETTLED_MODES, true)?;
-    study.text("Computed as in chapter 4; see its report for pictures of them.");
+    study.text("The tables are computed as in chapter 4, whose report has figures of them.");
     let [truncated, settled]: [Vec<Dataset>; 2] =
         [&truncated, &settled].map(|tables| tables.iter().map(Dataset::new).collect());
 

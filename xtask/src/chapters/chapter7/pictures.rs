@@ -29,7 +29,7 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Resu
         let p: Vec<String> = found.fit.parameters.iter().map(|p| significant(*p, 3)).collect();
         let title = format!("Fig. 7.{number}  {}: μ₀ = {}, α₀ = {}, α₁ = {}", data.beam.title, p[0], p[1], p[2]);
         let model = Curve { values: &law, colour: Colour::Blue, marker: Some(Marker::Circle), label: "algebraic law" };
-        let caption = "Red: the table, resolved in time. Blue: the law with the beam's one set of parameters.";
+        let caption = "Red: the table, resolved in time. Blue: the law, with one set of parameters for the beam.";
         study.figure(&format!("fig-7-{number:02}"), &by_ball(&title, data, &[model]), caption)?;
         let rows: Vec<PointRow> = (0..data.rows.len())
             .map(|i| {

@@ -76,7 +76,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<Vec<Drop
         "8.2.1, 8.2.2",
         "remarkable behavior: e = 1 for one rod and a rigid surface; in reality still high",
         (0.95, 1.0),
-        "1D theory has no local compliance; a twentieth for ours",
+        "the one-dimensional theory has no local compliance; ours may take a twentieth",
         least,
     ));
     let most = rows.iter().filter(|row| row.angle_deg >= NEARLY_VERTICAL).map(|row| row.micro_collisions);
@@ -89,13 +89,14 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<Vec<Drop
             "as stated; from where on \"nearly\" holds is our reading",
             most.max().unwrap_or(0) as f64,
         )
-        .note("The thesis speaks of the measured rods; ours are resolved."),
+        .note("The statement of the thesis is about the measured rods; ours are resolved."),
     );
     let figure = Figure::new("Rods dropped on an immovable surface, resolved in time").row([above]).row([below]);
     study.figure(
         "drops",
         &figure,
-        "Above: restitution of the contact point's rigid-body motion; below: micro-collisions within the impact.",
+        "Restitution of the rigid-body motion of the contact point (top) and number of micro-collisions within the \
+         impact (bottom).",
     )?;
     Ok(rows)
 }

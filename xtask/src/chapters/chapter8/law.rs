@@ -98,7 +98,12 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     )?;
     let longest = parameters.lengths_m[0];
     let of_longest = |i: usize| points[i].length_m == longest;
-    study.main_figure("fig-8-03", &axial_figure(parameters, &points, &found, longest)?, "The longest rod. One axial mode in the law, all parameters as in Fig. 8.2, lowers the restitution of steep rods.")?;
+    study.main_figure(
+        "fig-8-03",
+        &axial_figure(parameters, &points, &found, longest)?,
+        "The figure shows the longest rod. One axial mode in the law, with the parameters of Fig. 8.2, lowers the \
+         restitution of steep rods.",
+    )?;
 
     let steep = |i: usize| points[i].angle_deg > 70.0;
     let line = |name: &str, fit: &[f64], residuals: &[f64]| {
@@ -122,8 +127,9 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         ],
     );
     study.text(&format!(
-        "Rms difference of law and resolved drop; largest {}, over all {} drops. A parameter given as ∞ \
-         has run off to that limit: the law with an axial mode cannot rise to 1 towards 90°, whatever its parameters.",
+        "The table has the rms difference of law and resolved drop. The largest difference is {}, over all {} drops. A \
+         parameter stated as ∞ has grown beyond all limits: with an axial mode the law cannot rise to 1 towards 90° \
+         for any parameters.",
         significant(found.report.max_abs, 3),
         found.report.count
     ));
@@ -235,7 +241,9 @@ fn bending_modes(study: &mut Study, parameters: &Parameters) -> Result<(), Failu
             let (words, exactly) = (stated.to_string(), (stated as f64, stated as f64));
             study.state(Statement::self_check(quantity, ["8.2.2", &words, reason], exactly, found));
         } else {
-            let note = format!("So for every diameter from {low} to {high} mm, which the other two numbers leave.");
+            let note = format!(
+                "This holds for every diameter from {low} to {high} mm, the range that the other two numbers allow."
+            );
             study.state(Statement::printed(quantity, "8.2.2", &stated.to_string(), found).note(note));
         }
     }

@@ -67,11 +67,11 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, points: &[Point]) 
     study.figure(
         "measured",
         &by_rod("Law and points given, one set of parameters:", "points given", parameters, points, &found)?,
-        "Red: the points given. Blue: the law, fitted to them, one set of parameters for all rods.",
+        "Red: the points given. Blue: the law fitted to them, with one set of parameters for all rods.",
     )?;
     let p: Vec<String> = found.parameters.iter().map(|p| significant(*p, 4)).collect();
     study.text(&format!(
-        "{} points. μ₀ = {}, α₀ = {}, α₁ = {}; rms difference {}, largest {}.",
+        "The fit to {} points has μ₀ = {}, α₀ = {}, α₁ = {}. The rms difference is {}, the largest {}.",
         found.report.count,
         p[0],
         p[1],

@@ -22,10 +22,10 @@ fn range(rows: &[&DropRow]) -> f64 {
 pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow]) -> Result<(), Failure> {
     study.section("What the abstract of the experiments says");
     study.text(
-        "The thesis does not print what it takes from Stoianovici and Hurmuzlu (1996) but for a few words and a figure, whose \
-         points we do not have. Their abstract (doi:10.1115/1.2788865) says three things that can be held against resolved \
-         drops: that the restitution varies with the inclination, that vibration and multiple impacts make it vary, and that \
-         bars which are not slender enough are free of that.",
+        "The thesis quotes Stoianovici and Hurmuzlu (1996) only in a few words and a figure, whose points we do not \
+         have. Their abstract (doi:10.1115/1.2788865) makes three statements that can be compared with resolved drops: \
+         the restitution varies with the inclination, vibration and multiple impacts cause the variation, and the \
+         restitution of bars that are not slender enough does not vary.",
     );
     let ranges: Vec<(f64, f64)> = parameters
         .lengths_m
@@ -64,13 +64,13 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         Statement::trend(
             format!("range of e over the inclinations of a bar of {:.0} mm", 1e3 * stubby_m),
             SOURCE,
-            "a slenderness factor parts off the bars whose restitution does not vary",
+            "a slenderness factor separates the bars whose restitution does not vary",
             (0.0, CLEAR),
             "a tenth of the range from 0 to 1",
             stubby,
         )
         .note(format!(
-            "Ranges of the rods: {}. Euler and Bernoulli's beam is too stiff for so stubby a bar.",
+            "Ranges of the rods: {}. Euler-Bernoulli's theory is too stiff for such a short bar.",
             told.join(", ")
         )),
     );

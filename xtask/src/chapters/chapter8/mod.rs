@@ -13,13 +13,13 @@ use parameters::Parameters;
 use std::path::Path;
 use tasks::{BadInput, Failure};
 
-const INTRODUCTION: &str = "Steel rods with hemispherical ends fall on an immovable surface and meet it with one end, at \
-inclinations from lying (0°) to upright (90°). **The points of the experiment (Stoianovici and Hurmuzlu 1996) are not \
-printed in the thesis, so nothing here is compared with them.** In their place stand our own drops, resolved in time: \
-rigid translation and rotation, bending and axial modes, Hertz contact of the end, no friction, no gravity during the \
-contact, and no contact of the other end, which matters for rods that fall almost flat. The algebraic law is fitted to \
-these drops. `cargo xtask reproduce-chapter 8 --data points.csv` (columns length_m, angle_deg, restitution) fits and \
-plots points that a person has read off the published figure.";
+const INTRODUCTION: &str = "Steel rods with hemispherical ends fall on an immovable surface and meet it with one end, \
+at inclinations from lying (0°) to upright (90°). **The points of the experiment (Stoianovici and Hurmuzlu 1996) are \
+not printed in the thesis, so nothing here is compared with them.** Our own drops, resolved in time, take their place. \
+They include rigid translation and rotation, bending and axial modes, and Hertz contact of the end. They neglect \
+friction, gravity during the contact, and contact of the other end, which matters for rods that fall almost flat. The \
+algebraic law is fitted to these drops. `cargo xtask reproduce-chapter 8 --data points.csv` (columns length_m, \
+angle_deg, restitution) fits and plots points that were read off the published figure.";
 
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str, Failure> {

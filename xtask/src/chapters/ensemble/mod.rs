@@ -16,13 +16,13 @@ use variant::{MOST_MODES, Variant, claim};
 use vibroimpact::plot::{Axis, Figure, HeatMap, Panel};
 use vibroimpact::report::significant;
 
-const INTRODUCTION: &str = "The thesis does not print where its stepped beams have their step, how thin the slim part \
-is, or the list of its twelve balls. What it says of them is therefore tried with all choices that are plausible: a \
-grid of steps and slim parts, and every list of twelve balls in equal steps of whole millimetres that contains the three \
-masses which chapter 4 names. Everything else is as in chapter 4: 40 modes, 2 % damping, 1 m/s, 25 places. What section 7.2 says of the law is tried \
-on the same tables, the law fitted to each. A trend that \
-holds in nine of ten choices counts as borne out, one that fails in nine of ten as refuted; between, the text does not \
-let anyone decide.";
+const INTRODUCTION: &str = "The thesis states neither the position of its steps, nor the thickness of its slim parts, \
+nor the list of its twelve balls. Its statements about them are therefore tested with all plausible choices: a grid of \
+steps and slim parts, and every list of twelve balls in equal steps of whole millimetres that contains the three \
+masses which chapter 4 states. Everything else is as in chapter 4: 40 modes, 2 % damping, 1 m/s, 25 locations. The \
+statements of section 7.2 about the law are tested on the same tables, with the law fitted to each. A trend that holds \
+in nine of ten choices counts as confirmed, one that fails in nine of ten as refuted. Otherwise the text does not \
+suffice to decide.";
 
 /// Result of a trend of one beam over all choices.
 #[derive(Serialize)]
@@ -198,7 +198,8 @@ fn map(study: &mut Study, choice: &EnsembleChoice, judged: &[&Judged], beam: &Be
     study.main_figure(
         &format!("choices-{}", beam.name),
         &Figure::new(title).row([panel]).width(620.0),
-        "Over step and slim part, all ball lists together. The choice of `datasets/chapter4.json` is 0.5 and 0.5.",
+        "The share is over step and slim part, for all lists of balls together. The choice of `datasets/chapter4.json` \
+         is 0.5 and 0.5.",
     )
 }
 
@@ -216,8 +217,10 @@ fn fitting_choices(study: &mut Study, judged: &[Judged]) {
         let share = share(&|one| one.smallest_ball_mm == *smallest);
         vec![format!("{smallest} mm"), format!("{} %", significant(100.0 * share, 3))]
     };
-    study
-        .text("Share of the trends that hold, over all beams, steps and slim parts, by the smallest ball of the list:");
+    study.text(
+        "The table has the share of the trends that hold over all beams, steps and slim parts, by the smallest ball of \
+         the list.",
+    );
     study.table(&["smallest ball", "trends that hold"], &lists.iter().map(line).collect::<Vec<_>>());
 
     let mut pairs: Vec<(f64, f64)> = Vec::new();
@@ -234,7 +237,10 @@ fn fitting_choices(study: &mut Study, judged: &[Judged]) {
         vec![(rank + 1).to_string(), significant(*step, 3), significant(*slim, 2), share]
     };
     let all: Vec<Vec<String>> = ranked.iter().enumerate().map(line).collect();
-    study.text("The same over both stepped beams and all lists, by step and slim part; the first five, and ours:");
+    study.text(
+        "The next table has the same share over both stepped beams and all lists, by step and slim part, for the five \
+         best choices and for ours.",
+    );
     let ours = |row: &&Vec<String>| row[1] == "0.5" && row[2] == "0.5";
     let shown: Vec<Vec<String>> = all.iter().take(5).chain(all.iter().skip(5).filter(ours)).cloned().collect();
     study.table(&["rank", "step (m)", "thickness of the slim part / side", "trends that hold"], &shown);
@@ -253,8 +259,9 @@ fn free_end(study: &mut Study, judged: &[Judged]) {
         })
         .collect();
     study.text(
-        "The rise towards the free end depends on the list of balls: the lightest lose at the very tip, where a beam is \
-         far more mobile, and a list without them shows the rise that the thesis speaks of. Mean over all balls:",
+        "The rise towards the free end depends on the list of balls. The lightest balls lose speed at the very tip, \
+         where a beam is far more mobile, and a list without them shows the rise that the thesis describes. The table \
+         has the mean over all balls.",
     );
     study.table(&["beam", "smallest ball", "e at the free end minus that two locations before"], &rows);
 }

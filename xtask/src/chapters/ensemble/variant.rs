@@ -32,9 +32,9 @@ pub fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) 
         values.sort_by(f64::total_cmp);
         let [low, middle, high] = [0, values.len() / 2, values.len() - 1].map(|k| significant(values[k], 2));
         let limits = limits(trend.limits.0, trend.limits.1);
-        let quantity = format!("share of choices with {limits} for {}, {beam}", trend.quantity);
+        let quantity = format!("{}, {beam}; share of choices that give {limits}", trend.quantity);
         let statement = Statement::choices(quantity, &source, trend.words, (holds, of.len())).note(format!(
-            "The values range from {low} to {high}, with the median {middle}. The limit is {}.",
+            "The values range from {low} to {high}, with the median {middle}. Reason for the limit: {}.",
             trend.reason
         ));
         let refuted = statement.verdict() == Verdict::Differs;

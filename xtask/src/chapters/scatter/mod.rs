@@ -16,11 +16,11 @@ use tasks::{Failure, Study};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Comparison, significant};
 
-const INTRODUCTION: &str = "The law of energy minimisation under outward constraints tells what an impact with given mass ratios \
-comes to; impacts with the same ratios scatter about it, because their sub-impacts come in another order. Here the law is \
-fitted to the tables of chapter 4 by the largest likelihood, its scatter to beams that the others predict, and each beam is \
-predicted by the fit to the other three. All scores are those of predictions. Held ends, where no mode moves and the law is exact, are left \
-out.";
+const INTRODUCTION: &str = "The law of energy minimisation under outward constraints gives one restitution for given \
+mass ratios. Impacts with the same ratios scatter about it, because their sub-impacts occur in a different order. Here \
+the law is fitted to the tables of chapter 4 by maximum likelihood, its scatter is fitted to each beam about the law \
+that the other beams give, and each beam is predicted by the fit to the other three. All scores are those of \
+predictions. Held ends, where no mode moves and the law is exact, are omitted.";
 
 /// Modes of the converged tables, with remainder modes for all others.
 const MODES: usize = 160;
@@ -58,7 +58,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
         Comparison::range(quantity, "converged tables", &stated, range, ours)
     };
     let [law, _, _, constant, ..] = models.as_slice() else { return Ok(INTRODUCTION) };
-    study.state(target("share within the 95 % intervals, beams left out", (0.92, 0.98), law.mean(|b| b.coverage[2])));
+    study.state(target("share within the 95 % intervals, omitted beams", (0.92, 0.98), law.mean(|b| b.coverage[2])));
     let ratio = law.mean(|beam| beam.crps) / constant.mean(|beam| beam.crps);
     study.state(target("CRPS of the law with its scatter over that of a constant", (0.0, 0.5), ratio));
     let (_, converged) = &tables[1];
@@ -115,7 +115,10 @@ fn scores(study: &mut Study, found: &Found) -> Result<(), Failure> {
     let headers =
         ["tables", "model", "parameters", "CRPS", "log score", "rms of the median", "within 95 %", "mean width"];
     study.tabled("scores", &headers, &lines)?;
-    study.text("Means over all impacts, each beam predicted by the fit to the other three; the smaller the better.");
+    study.text(
+        "The table has means over all impacts, where each beam is predicted by the fit to the other three. Smaller \
+         scores are better.",
+    );
     Ok(())
 }
 
@@ -133,7 +136,8 @@ fn coverage(study: &mut Study, found: &Found, tables: &[(&str, Vec<Table>)]) -> 
     let headers: Vec<&str> =
         ["tables", "beam left out"].into_iter().chain(levels.iter().map(String::as_str)).chain(["CRPS"]).collect();
     study.tabled("coverage", &headers, &lines)?;
-    study.text("The law with its scatter, for each beam by the fit to the other three.");
+    study
+        .text("The table is for the law with its scatter, where each beam is predicted by the fit to the other three.");
     Ok(())
 }
 
@@ -146,7 +150,7 @@ fn parameters(study: &mut Study, found: &Found) -> Result<(), Failure> {
     let headers: Vec<&str> = std::iter::once("tables").chain(names).collect();
     study.tabled("parameters", &headers, &found.iter().map(of).collect::<Vec<Vec<String>>>())?;
     study.text(&format!(
-        "The law with its scatter, fitted to all four beams at once, with {LAW_MODES} modes in the law."
+        "The law with its scatter is fitted to all four beams at once, with {LAW_MODES} modes in the law."
     ));
     Ok(())
 }
@@ -173,8 +177,9 @@ fn bands(study: &mut Study, tables: &[Table], evidence: &Evidence) -> Result<(),
     study.figure(
         "scatter-of-the-law",
         &figure,
-        "Dots: the table (Euler-Bernoulli, converged). Line and band: median and 95 % interval of the law with its scatter, \
-         fitted to the other three beams; averaged over the impacts with nearly the same Z.",
+        "The dots are the table (Euler-Bernoulli, converged). Line and band are the median and the 95 % interval of \
+         the law with its scatter, fitted to the other three beams and averaged over the impacts with nearly the same \
+         Z.",
     )
 }
 

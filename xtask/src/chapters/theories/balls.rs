@@ -86,7 +86,7 @@ fn against_modes(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -
         study.figure(
             &format!("modes-{place}"),
             &figure.width(960.0),
-            "Grey: the modes kept and nothing else, as in the thesis. Coloured: remainder modes answer for all others.",
+            "Grey: the retained modes alone, as in the thesis. Coloured: with remainder modes for all others.",
         )?;
     }
     Ok(())
@@ -153,8 +153,9 @@ fn limits(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Resul
         &lines,
     )?;
     study.text(&format!(
-        "Restitutions with {fine} modes and remainder modes; contacts by either theory. Scatter: standard deviation of \
-         plain truncation over {MANY} and more modes, by Euler-Bernoulli's theory. Settled to: the larger change from {coarse} to {fine} modes."
+        "The restitutions are those with {fine} modes and remainder modes, and the contacts those by either theory. \
+         The scatter is the standard deviation with plain truncation over {MANY} and more modes, by Euler-Bernoulli's \
+         theory. The column \"converged to\" has the larger change from {coarse} to {fine} modes."
     ));
     Ok(())
 }

@@ -35,16 +35,20 @@ pub(super) fn run(study: &mut Study, tables: &Tables) -> Result<(), Failure> {
         other.push(compared(&data[1], slender, &data[2], thick)?);
     }
     study.tabled("law", &["beam", "table", "rms", "one contact", "several", "irregularity", "μ₀, α₀, α₁"], &lines)?;
-    study.text("Rms of the difference of law and table, over all and over impacts of one and of several contacts.");
+    study.text(
+        "The table has the rms difference of law and table, over all impacts and over those with one and with several \
+         contacts.",
+    );
     study.tabled(
         "law-compared",
         &["beam", "Z, change", "e of one contact, change", "rms, own parameters", "rms, Euler-Bernoulli's parameters"],
         &other,
     )?;
     study.text(
-        "Timoshenko's against Euler-Bernoulli's: mean change of Z = m Σ φₖ², by which the law knows how mobile a place is; mean \
-         change of the restitution in the table; and the law on Timoshenko's table with parameters fitted to it, and with \
-         those fitted to Euler-Bernoulli's.",
+        "Timoshenko's theory is compared with Euler-Bernoulli's. The columns have the mean change of Z = m Σ φₖ², \
+         which represents the mobility of a location in the law; the mean change of the restitution in the table; and \
+         the error of the law on Timoshenko's table, with parameters fitted to it and with those fitted to \
+         Euler-Bernoulli's.",
     );
     Ok(())
 }

@@ -37,10 +37,11 @@ pub(super) use coefficients::kaneko;
 use coefficients::{APART, Coefficient, coefficients};
 use tasks::Failure;
 
-const INTRODUCTION: &str = "The impacts of chapters 3, 4 and 7 by Timoshenko's theory beside Euler-Bernoulli's, which \
-is the thesis's. Where nothing else is said, remainder modes answer for all modes left out, so that what is compared is \
-converged, and the shear coefficient is 5(1+ν)/(6+5ν). *Truncation* below is what plain truncation at N = 40 changes, as in the thesis; *theory* is the difference \
-of the two theories; *coefficient* is what ± 2 % of the shear coefficient change in Timoshenko's.";
+const INTRODUCTION: &str = "This report solves the impacts of chapters 3, 4 and 7 by Timoshenko's theory and compares \
+them with Euler-Bernoulli's theory, which the thesis uses. Unless stated otherwise, remainder modes represent all \
+truncated modes, so that converged restitutions are compared, and the shear coefficient is 5(1+ν)/(6+5ν). *Truncation* \
+is the change by plain truncation at N = 40, as in the thesis. *Theory* is the difference of the two theories. \
+*Coefficient* is the change by ± 2 % of the shear coefficient in Timoshenko's theory.";
 
 /// Runs the study and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {

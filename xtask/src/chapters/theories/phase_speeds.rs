@@ -83,7 +83,7 @@ impl Speeds {
 }
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
-    study.section("Phase speeds beside elasticity");
+    study.section("Phase speeds compared with elasticity");
     let material = &case.parameters.material;
     let slender = case.parameters.beam.side_m / case.parameters.beam.length_m;
     let all: Vec<Speeds> = (1..=MODES).map(|mode| Speeds::new(mode, slender, material)).collect();
@@ -101,8 +101,11 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         .into_iter()
         .chain(names.iter().map(String::as_str))
         .collect();
-    study.tabled("phase-speeds-told", &headers, &lines)?;
-    study.text("By how much the phase speed of a mode of chapter 3's beam differs from elasticity in two dimensions.");
+    study.tabled("phase-speeds-printed", &headers, &lines)?;
+    study.text(
+        "The table has the deviation of the phase speed from elasticity in two dimensions, for modes of the beam of \
+         chapter 3.",
+    );
     picture(study, &all, &names)?;
 
     let largest = |of: fn(&Speeds) -> f64| all.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
@@ -146,7 +149,7 @@ fn picture(study: &mut Study, all: &[Speeds], names: &[String]) -> Result<(), Fa
         .with(Series::line(&modes, &speed(|s| s.kaneko)).colour(Colour::Blue).label("Timoshenko, Kaneko's κ"))
         .with(Series::line(&modes, &speed(|_| 0.0)).colour(Colour::Black).dashed().label("elasticity"));
     let mut errors = Panel::new(x, Axis::new("error of the phase speed").unit("%").limits(-1.5, 1.5))
-        .title("its error against elasticity")
+        .title("error compared with elasticity")
         .height(230.0);
     let percent = |i: usize| -> Vec<f64> { all.iter().map(|s| 100.0 * s.errors()[i]).collect() };
     errors = errors.with(Series::line(&modes, &percent(0)).colour(Colour::Vermilion).label("Euler-Bernoulli"));
@@ -157,7 +160,8 @@ fn picture(study: &mut Study, all: &[Speeds], names: &[String]) -> Result<(), Fa
     study.figure(
         "phase-speeds",
         &Figure::new("Bending waves on the beam of chapter 3").row([speeds, errors]).width(960.0),
-        "Lowest antisymmetric branch of Rayleigh and Lamb (plane stress) beside both theories of bending.",
+        "The lowest antisymmetric branch of Rayleigh and Lamb (plane stress) is compared with both theories of \
+         bending.",
     )
 }
 

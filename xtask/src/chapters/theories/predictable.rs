@@ -108,7 +108,8 @@ fn picture(study: &mut Study, places: &[f64], diameters: &[u32], cells: &[Vec<Ce
     study.main_figure(
         "predictable",
         &figure,
-        "Half of the beam, damping ratio 0.02, 1 m/s. Changes below 10⁻⁴ are shown as 10⁻⁴.",
+        "The figure shows half of the beam, at a damping ratio of 0.02 and 1 m/s. Changes below 10⁻⁴ are shown as \
+         10⁻⁴.",
     )
 }
 

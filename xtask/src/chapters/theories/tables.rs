@@ -115,7 +115,8 @@ fn by_mass(study: &mut Study, tables: &[Table], curves: &[Kinds]) -> Result<(), 
     study.figure(
         "by-mass",
         &figure,
-        "Root mean square over the places of a beam. Truncation: N = 40 against converged.",
+        "The curves are root mean squares over the locations of a beam. Truncation is the difference of N = 40 from \
+         the converged restitution.",
     )
 }
 
@@ -124,11 +125,15 @@ fn maps(study: &mut Study, slender: &[Table], thick: &[Table]) -> Result<(), Fai
     let panel = |(slender, thick): (&Table, &Table)| {
         let (a, b) = (slender.by_ball(Row::e), thick.by_ball(Row::e));
         let difference = a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| b - a).collect()).collect();
-        let value = Axis::new("Timoshenko less Euler-Bernoulli").limits(-0.3, 0.3);
+        let value = Axis::new("Timoshenko minus Euler-Bernoulli").limits(-0.3, 0.3);
         thick.map(difference, value).title(thick.beam.title.clone())
     };
     let panels: Vec<Panel> = slender.iter().zip(thick).map(panel).collect();
     let figure = Figure::new("Restitution by Timoshenko's theory minus that by Euler-Bernoulli's").width(960.0);
     let figure = panels.chunks(2).fold(figure, |figure, row| figure.row(row.to_vec()));
-    study.figure("maps", &figure, "Both converged. Red: Timoshenko's beam returns more; blue: less.")
+    study.figure(
+        "maps",
+        &figure,
+        "Both restitutions are converged. Red: the restitution by Timoshenko's theory is larger. Blue: it is smaller.",
+    )
 }
