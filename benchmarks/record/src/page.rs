@@ -28,7 +28,7 @@ The error of a problem is the largest error of its results, relative if the refe
 otherwise. References are closed forms, multiple precision, or runs with a tighter tolerance in `benchmarks/references.json`.
 A problem on modes consists of five impacts at speeds from 0.8 to 1.25 m/s, at the tolerance that ends its name.
 
-Instructions: {conditions}.
+The instructions were counted for {conditions}.
 
 ",
         cost = 100.0 * COST_MARGIN,
@@ -46,7 +46,7 @@ Instructions: {conditions}.
             .collect();
         table(&mut text, &name, &entries);
     }
-    text.push_str("## History\n\n![Course of cost and error](benchmarks/history.svg)\n\n");
+    text.push_str("## History\n\n![Cost and error since the first recording](benchmarks/history.svg)\n\n");
     text.push_str("| recording | date | commit | version | compiler |\n|---|---|---|---|---|\n");
     for row in recordings(history) {
         let _ =
@@ -65,7 +65,8 @@ fn table(text: &mut String, name: &str, entries: &[(&str, &Entry)]) {
     let _ = writeln!(text, "\n|---|---|---|{}", "---|".repeat(costs.len()));
     for (problem, entry) in entries {
         let instructions = entry.instructions.map_or_else(|| "-".into(), |n| format!("{:.3} M", n as f64 / 1e6));
-        let _ = write!(text, "| {problem} | {:.1e} | {instructions} |", entry.error);
+        let error = if entry.error == 0.0 { "0".into() } else { format!("{:.1e}", entry.error) };
+        let _ = write!(text, "| {problem} | {error} | {instructions} |");
         for cost in &costs {
             let _ = write!(text, " {} |", entry.costs.get(*cost).map_or_else(|| "-".into(), u64::to_string));
         }

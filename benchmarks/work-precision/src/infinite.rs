@@ -161,7 +161,7 @@ pub fn rows(effort: &Effort) -> Result<Vec<Row>, String> {
             let solver = Solver { name: method, origin: Origin::Peer, cost_unit: "evaluations of the law" };
             rows.extend(sweep(name, solver, &settings, effort, |setting| {
                 let solution = volterra(s, true).solve(&make(setting), 1.1 * duration).map_err(|e| e.to_string())?;
-                let hit = solution.events.first().ok_or_else(|| format!("no separation: {:?}", solution.stop))?;
+                let hit = solution.events.first().ok_or("no separation up to the end")?;
                 let speed = hit.y.get(1).ok_or("no speed")?;
                 Ok(Found { cost: solution.counts.evaluations, errors: errors(hit.t, -speed) })
             }));

@@ -53,9 +53,12 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
     let mut figures = Vec::new();
     let mut page = Report::new("Work and precision");
     page.text(notes::INTRODUCTION);
-    page.text(&format!("Made by `cargo xtask work-precision`.\n\n{about}"));
+    page.text(&format!("`cargo xtask work-precision` makes this page. It was last run on:\n\n{about}"));
     if let Some(outside) = outside {
-        page.text(&format!("Solvers outside Rust, from `benchmarks/peers.sh`, measured apart:\n\n{}", outside.trim()));
+        page.text(&format!(
+            "`benchmarks/peers.sh` measures the solvers outside Rust separately. It was last run on:\n\n{}",
+            outside.trim()
+        ));
     }
     let problems = names(rows.iter().map(|row| row.problem.as_str()));
     if problems.contains(&OVERVIEW) {
@@ -120,21 +123,26 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
         page.heading(problem);
         page.text(&notes::about(problem));
         let picture = figure(problem, &rows, floor(problem));
-        let units = names(rows.iter().map(|row| row.cost_unit.as_str())).join(", ");
-        let caption = format!("Error against time and against cost ({units}, as the solver counts).");
+        let units = names(rows.iter().map(|row| row.cost_unit.as_str())).join(" or ");
+        let caption = format!("Error against time and against cost. The cost is the number of {units}.");
         let (name, text) = (format!("work-precision-{problem}"), |error: std::io::Error| error.to_string());
         page.figure(&name, &picture, &caption).map_err(text)?;
         figures.push((format!("figures/{name}.svg"), picture.svg().map_err(text)?));
         let failures: Vec<String> = rows
             .iter()
             .filter(|row| row.status != "ok")
-            .map(|row| format!("{} at {:.0e}: {}", row.solver, row.setting, row.status))
+            .map(|row| format!("{} at {}: {}", row.solver, setting(row.setting), row.status))
             .collect();
         if !failures.is_empty() {
             page.text(&format!("Runs without a result: {}.", failures.join("; ")));
         }
     }
     Ok(Page { report: page, figures })
+}
+
+/// A tolerance, or a number of steps, nodes or elements.
+fn setting(value: f64) -> String {
+    if value < 1.0 { format!("{value:.0e}") } else { value.to_string() }
 }
 
 /// The line of the table of targets, for an impact.

@@ -16,13 +16,15 @@ const BATCH: usize = 32;
 /// The rows so far, those of a scene on one line.
 const ROWS: &str = "rows.jsonl";
 
-const INTRODUCTION: &str = "The automatic choice of the model, tested on random scenes: beams by both theories \
-of bending, strings, plates, lists of modes, beams that move before the impact or run into a stop; every pair of ends, \
-places near supports and tips; strikers from a millionth to three times the mass of the structure, 0.05 to 5 m/s, every \
-law of contact, damping ratios from 0.001 to 0.1 and none; each at tolerances from 1e-2 to 1e-6. The reference has twice \
-the modes of the finest answer or more, of a list the beam that it was taken from, remainder modes for all others and \
-a tolerance of 1e-10, and of 1e-12 after several contacts. Its own error is the larger of its change from fewer modes and of \
-the solver's uncertainty. Where that error is more than a third of the tolerance, the scene is listed and not counted.";
+const INTRODUCTION: &str = "This report tests the automatic choice of the model on random scenes. Structures are \
+beams by both theories of bending, strings, plates, lists of modes, and beams that move before the impact or run into \
+a stop, with every pair of ends and locations near supports and tips. Strikers have from a millionth to three times \
+the mass of the structure and speeds from 0.05 to 5 m/s. The scenes have every law of contact and damping ratios of \
+zero or from 0.001 to 0.1. Each scene is answered at tolerances from 1e-2 to 1e-6. The reference has at least twice \
+the modes of the finest answer (for a list: the beam that it was taken from), remainder modes for all others, and a \
+tolerance of 1e-10, or of 1e-12 after several contacts. Its own error is the larger of its change from fewer modes \
+and of the solver's uncertainty. If that error is more than a third of the tolerance, the scene is listed but not \
+counted.";
 
 /// Options of the study of the choice.
 #[derive(clap::Args)]

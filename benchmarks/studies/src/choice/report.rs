@@ -111,8 +111,20 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
         };
         study.table(&headers(name), &groups.into_iter().map(line).collect::<Vec<_>>());
     }
-    listed(study, "Said to have converged, and beyond the tolerance:", rows, |row| row.settled && !row.meets());
-    listed(study, "Beyond the stated uncertainty:", rows, |row| row.overrun().is_some_and(|overrun| overrun > 1.0));
+    listed(
+        study,
+        "Answers that are said to have converged, but are beyond the \
+                   tolerance:",
+        rows,
+        |row| row.settled && !row.meets(),
+    );
+    listed(
+        study,
+        "Answers beyond the stated \
+                   uncertainty:",
+        rows,
+        |row| row.overrun().is_some_and(|overrun| overrun > 1.0),
+    );
     listed(study, "Not converged:", rows, |row| row.chosen && !row.settled);
     picture(study, rows)
 }
@@ -131,8 +143,9 @@ fn quantiles(planned: &[(&Row, [u64; 2])]) -> String {
         format!("{} and {}", at(0, 0.02), at(1, 0.98))
     };
     format!(
-        "Of the mode-steps over the least and over the most that are planned, 2 % lie below the first and above the second \
-         number: {} for one contact, {} for several, {} where the modes are stated.",
+        "The mode-steps of an answer are divided by the least and by the greatest number that was planned. Of the \
+         first ratio 2 % lie below the first number, of the second 2 % above the second number: {} for one contact, \
+         {} for several, {} where the modes are stated.",
         of(|row| row.chosen && row.sub_impacts == Some(1)),
         of(|row| row.chosen && row.sub_impacts != Some(1)),
         of(|row| !row.chosen)
