@@ -127,7 +127,7 @@ impl Plane {
         Crossing { waves: *waves, entry: [first, second], shrink, arrived: Some(arrived), triangle, exit }
     }
 
-    /// The plane behind a spring or a mass: the moment grows by `stiffness[1]` times the rotation, the shear force by
+    /// The plane beyond a spring or a mass: the moment grows by `stiffness[1]` times the rotation, the shear force by
     /// `stiffness[0]` times the displacement, both in the units of the state.
     pub fn loaded(&self, stiffness: [f64; 2]) -> Handover {
         let load = |z: &State| [z[0], z[1], z[2] + stiffness[1] * z[1], z[3] - stiffness[0] * z[0]];
@@ -135,7 +135,7 @@ impl Plane {
         Handover { plane, back: Back::Triangle(triangle) }
     }
 
-    /// The plane behind a rigid support: zero displacement, any shear force.
+    /// The plane beyond a rigid support: zero displacement, any shear force.
     pub fn supported(&self) -> Option<Handover> {
         let [u, v] = &self.0;
         let size = u[0].hypot(v[0]);

@@ -115,7 +115,7 @@ fn orthonormal(frame: &Frame) -> (Frame, Back) {
     ([e1, e2, t2], back)
 }
 
-/// Behind a support: any shear force, zero displacement. `None` if the displacement is zero already.
+/// The frame beyond a support: any shear force, zero displacement. `None` if the displacement is zero already.
 fn supported(frame: &Frame) -> Option<(Frame, Back)> {
     let [u, v, t] = frame;
     let size = u[0].hypot(v[0]);

@@ -31,7 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (structure, ball) = ball_on_beam();
     let (solution, history) = Solver::new(&structure)?.record(&ball, &law, None, &modal::Settings::default())?;
     let lasting_m = history.at(solution.end_s).compression_m;
-    println!("restitution {:?}, indentation {:.3} um", solution.restitution, 1e6 * lasting_m);
+    let restitution = solution.restitution.ok_or("the ball does not rebound")?;
+    println!("restitution {restitution:.4}, indentation {:.3} um", 1e6 * lasting_m);
     // ANCHOR_END: run
 
     // The same ball falls on the beam, and a stop above catches it.

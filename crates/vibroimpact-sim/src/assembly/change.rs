@@ -18,7 +18,7 @@ pub(crate) struct Change<'a> {
     /// Amplitudes and rates at the start, relative to the steady motion (per unit of the parameter, as everything here).
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
-    /// Of each contact: its gap, and its weights `psi`.
+    /// Gap of each contact, and its weights `psi`.
     pub gap_m: Vec<f64>,
     pub psi: Vec<Vec<Span>>,
     /// `c_1` and `c_2` of each mode, see [`super::tangent`].

@@ -42,26 +42,26 @@ pub struct Derivative {
     pub uncertainty: Option<f64>,
 }
 
-/// Derivatives of one interval of contact.
+/// Derivatives of one interval of contact, per unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalDerivatives {
-    /// Of first touch (s).
+    /// Time of first touch (s).
     pub start_s: Derivative,
-    /// Of the release (s); `None` for a contact under way at the end.
+    /// Time of the release (s); `None` for a contact under way at the end.
     pub end_s: Option<Derivative>,
-    /// Of the impulse (N s).
+    /// Impulse (N s).
     pub impulse_n_s: Derivative,
-    /// Of the largest force (N).
+    /// Largest force (N).
     pub peak_force_n: Derivative,
-    /// Of the largest compression (m).
+    /// Largest compression (m).
     pub peak_compression_m: Derivative,
-    /// Of the rate of compression at first touch (m/s).
+    /// Rate of compression at first touch (m/s).
     pub approach_speed_m_s: Derivative,
-    /// Of the rate of opening at the release (m/s).
+    /// Rate of opening at the release (m/s).
     pub separation_speed_m_s: Option<Derivative>,
 }
 
-/// Derivatives of a contact.
+/// Derivatives of a contact, per unit of the parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactDerivatives {
     /// Its intervals.
@@ -72,12 +72,12 @@ pub struct ContactDerivatives {
     pub velocity_m_s: [Derivative; 2],
 }
 
-/// Derivatives of a run with respect to one parameter.
+/// Derivatives of a run with respect to one parameter, per unit of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// Of the end of the run (s): that of the requested time, or zero if the run ended at rest.
+    /// End of the run (s): the derivative of the requested time, or zero if the run ended at rest.
     pub end_s: f64,
-    /// Of each contact.
+    /// Each contact.
     pub contacts: Vec<ContactDerivatives>,
 }
 

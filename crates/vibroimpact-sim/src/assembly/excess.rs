@@ -43,7 +43,7 @@ pub(crate) struct Pushed {
 }
 
 impl Excess {
-    /// Of a panel of `h`, on which the modes move like this.
+    /// The difference for a panel of `h`, on which the modes have these motions.
     pub fn new(system: &System, h: f64, modes: impl Iterator<Item = OnPanel>) -> Excess {
         let of = |(k, mode): (usize, OnPanel)| {
             if !is_fast(system, h, k) {
@@ -143,7 +143,7 @@ fn is_fast(system: &System, h: f64, k: usize) -> bool {
     system.turning[k] * h > FAST
 }
 
-/// Those of the modes of a body that are fast on a panel of `h`.
+/// The modes of a body that are fast on a panel of `h`.
 fn fast(system: &System, h: f64, body: &Range<usize>) -> Range<usize> {
     let slow = system.turning[body.clone()].partition_point(|turning| turning * h <= FAST);
     body.start + slow..body.end

@@ -48,7 +48,7 @@ impl LoadChange {
         (amplitude, rate)
     }
 
-    /// Of the steady motion.
+    /// Changes of the steady motion.
     pub fn steady(&self, system: &System, time_s: f64) -> (Vec<f64>, Vec<f64>) {
         let motions = self.neighbours.each_ref().map(|(system, loads)| {
             let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);
@@ -58,18 +58,18 @@ impl LoadChange {
         self.of_modes(system, &motions)
     }
 
-    /// Of [`Loads::overlap`].
+    /// Change of [`Loads::overlap`].
     pub fn overlap(&self, contact: usize, time_s: f64) -> [f64; 2] {
         let of = |part: fn((f64, f64)) -> f64| self.slope(|_, loads| part(loads.overlap(contact, time_s)));
         [of(|pair| pair.0), of(|pair| pair.1)]
     }
 
-    /// Of the first number of [`Loads::moved`].
+    /// Change of the first number of [`Loads::moved`].
     pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> f64 {
         self.slope(|_, loads| loads.moved(contact, time_s, h).0)
     }
 
-    /// Of the piecewise linear force on a rigid mode at `time_s`, and of its slope.
+    /// Change of the piecewise linear force on a rigid mode at `time_s`, and of its slope.
     pub fn line(&self, k: usize, system: &System, time_s: f64) -> (f64, f64) {
         let body = system.bodies.iter().position(|modes| modes.contains(&k)).unwrap_or_default();
         let number = system.place[body].iter().position(|place| *place == k).unwrap_or_default();
@@ -79,7 +79,7 @@ impl LoadChange {
         (of(|pair| pair.0), of(|pair| pair.1))
     }
 
-    /// Of the time of the next break.
+    /// Change of the time of the next break.
     pub fn next_break_s(&self) -> f64 {
         self.slope(|_, loads| loads.next_break_s())
     }

@@ -204,7 +204,7 @@ pub(crate) fn require_all_finite(values: &[f64], count: usize, field: &'static s
 /// An assembly with laws of any type by reference, so that the engine is compiled only once.
 pub(crate) struct Posed<'a> {
     pub bodies: &'a [Body],
-    /// Of every contact.
+    /// The two sides of every contact.
     pub sides: Vec<&'a [Point; 2]>,
     pub gaps_m: Vec<f64>,
     pub laws: Vec<&'a dyn ContactLaw>,

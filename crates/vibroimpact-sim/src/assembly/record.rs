@@ -52,8 +52,8 @@ impl<'a> March<'a> {
         self.misses = Some(misses);
     }
 
-    /// Of an open contact its gap; of a closed one the compression above that at which its branch ends, if that does not depend on
-    /// the rate.
+    /// The distance of a contact from its next event: the gap of an open contact; for a closed one, the compression above that at
+    /// which its branch ends, if that does not depend on the rate.
     fn distance(&self, c: usize) -> Option<Distance> {
         let state = &self.states[c];
         if !state.is_closed() {

@@ -53,9 +53,9 @@ pub(crate) struct Touch {
     pub rate_residue: f64,
     /// The last panel's force, and its length.
     pub previous: Option<(Legendre, f64)>,
-    /// With the largest force until statistics began.
+    /// The present interval, with the largest force until statistics began.
     pub interval: Interval,
-    /// Since then.
+    /// Largest force and compression since then.
     pub peak_force: Peak,
     pub peak_compression: Peak,
 }

@@ -65,35 +65,35 @@ pub struct Parameter<'a> {
     pub changes_law: bool,
 }
 
-/// Derivatives of one interval of contact.
+/// Derivatives of one interval of contact, per unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubImpactDerivatives {
-    /// Of first touch (s).
+    /// Time of first touch (s).
     pub start_s: Derivative,
-    /// Of separation (s).
+    /// Time of separation (s).
     pub end_s: Derivative,
-    /// Of the impulse (N s).
+    /// Impulse (N s).
     pub impulse_n_s: Derivative,
-    /// Of the largest force (N).
+    /// Largest force (N).
     pub peak_force_n: Derivative,
-    /// Of the largest compression (m).
+    /// Largest compression (m).
     pub peak_compression_m: Derivative,
 }
 
-/// Derivatives of an impact with respect to one parameter.
+/// Derivatives of an impact with respect to one parameter, per unit of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// Of the net restitution.
+    /// Net restitution.
     pub restitution: Derivative,
-    /// Of the time of the last separation (s).
+    /// Time of the last separation (s).
     pub end_s: Derivative,
-    /// Of the striker's velocity then (m/s).
+    /// Velocity of the striker then (m/s).
     pub striker_velocity_m_s: Derivative,
-    /// Of each interval of contact.
+    /// Each interval of contact.
     pub sub_impacts: Vec<SubImpactDerivatives>,
-    /// Of the modal amplitudes at the last separation (m kg^1/2), whose time changes as well.
+    /// Modal amplitudes at the last separation (m kg^1/2), whose time changes as well.
     pub amplitude: Vec<f64>,
-    /// Of their rates (m kg^1/2 / s).
+    /// Their rates (m kg^1/2 / s).
     pub rate: Vec<f64>,
 }
 
@@ -226,7 +226,7 @@ impl Solver {
         Ok(Differentiated { solution, derivatives, nearest_graze, nearest_miss })
     }
 
-    /// The modes that move the contact, here or at a neighbour.
+    /// The modes that move the contact, at the value itself or at a neighbour.
     fn moved_by(&self, parameters: &[Parameter]) -> Vec<usize> {
         let structures = || parameters.iter().flat_map(|parameter| &parameter.neighbours);
         let moves = |k: &usize| {
@@ -244,8 +244,9 @@ struct Along<'a> {
     parameters: &'a [Parameter<'a>],
     posed: &'a Posed<'a>,
     system: &'a System,
-    /// By parameter, as is the striker as it moves at the neighbours.
+    /// For each parameter.
     changes: Vec<Change<'a>>,
+    /// For each parameter the weight of the striker's motion at the neighbours.
     sides: Vec<[Option<Span>; 4]>,
 }
 

@@ -62,7 +62,7 @@ pub struct History<L> {
 #[derive(Debug, Clone)]
 pub(crate) struct Recorded {
     pub modes: Vec<Mode>,
-    /// Those of them that move the contact.
+    /// Indices of the modes that move the contact.
     pub moved: Vec<usize>,
     pub striker: Striker,
     pub start: Start,
@@ -71,7 +71,7 @@ pub(crate) struct Recorded {
 }
 
 impl<L: ContactLaw> History<L> {
-    /// With the work of the contact, and the dissipation by damping of the modes that move it (J).
+    /// `work_and_damping_j` is the work of the contact, and the energy that the modes which move it lose to damping (J).
     pub(crate) fn new(recorded: Recorded, law: L, solution: &Solution, work_and_damping_j: [f64; 2]) -> History<L> {
         History {
             ledger: recorded.ledger(solution, work_and_damping_j),
@@ -199,7 +199,7 @@ fn energies(modes: &[Mode], amplitude: &[f64], rate: &[f64]) -> Vec<f64> {
     modes.iter().enumerate().map(energy).collect()
 }
 
-/// All modes of a structure at a time, of which these have moved like this under the contact; the others move freely.
+/// All modes of a structure at a time. Those that the contact moves have this state; the others move freely.
 pub(crate) fn all_modes(
     modes: &[Mode],
     moved: &[usize],

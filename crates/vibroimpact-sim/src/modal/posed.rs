@@ -6,7 +6,7 @@ use crate::assembly::{Assembly, Body, Contact, Point};
 /// Mass of a moving stop relative to the structure, so large that no contact slows it down.
 const IMMOVABLE: f64 = 1e30;
 
-/// Number of the structure among the bodies, and of the striker, which is absent if it is a stop at rest.
+/// Indices of the structure and of the striker among the bodies. A stop at rest is not a body.
 pub(crate) const STRUCTURE: usize = 0;
 pub(crate) const STRIKER: usize = 1;
 
@@ -19,7 +19,7 @@ pub(crate) fn mass_kg(striker: &Striker, modes: &[Mode]) -> Option<f64> {
     (striker.speed_m_s != 0.0).then_some(IMMOVABLE / inverse)
 }
 
-/// The impact of a striker on these of the structure's modes, but for the law of their contact.
+/// The impact of a striker on some modes of the structure, without the law of their contact.
 pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start: &Start) -> Assembly<()> {
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
     let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();

@@ -28,7 +28,7 @@ pub struct Recording {
     pub(crate) system: System,
     pub(crate) record: Record,
     pub(crate) tables: Arc<Tables>,
-    /// If they are known already.
+    /// Work of the contact and loss by damping, if they are already known (J).
     pub(crate) work_and_damping_j: Option<[f64; 2]>,
 }
 

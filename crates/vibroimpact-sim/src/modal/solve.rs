@@ -56,7 +56,7 @@ const LEAST: f64 = 2.5e-3;
 /// ```
 pub struct Solver {
     modes: Vec<Mode>,
-    /// Those that move the contact.
+    /// Indices of the modes that move the contact.
     moved: Vec<usize>,
     /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
     tables: [OnceLock<Arc<Tables>>; 2],
@@ -97,7 +97,7 @@ pub(crate) struct Solved {
     pub solution: Solution,
     pub run: Run,
     system: System,
-    /// Of the run, if it was computed while coarser problems were solved in another thread.
+    /// Work of the contact and loss by damping in the run, if computed while coarser problems were solved in another thread (J).
     work_and_damping_j: Option<[f64; 2]>,
 }
 
@@ -445,7 +445,7 @@ impl Solver {
         striker.speed_m_s + self.rigid_motion(|k| start.rate[k])
     }
 
-    /// Motion of the contact with the rigid-body modes, which move by so much each.
+    /// Motion of the contact by the rigid-body modes; `of` is the motion of each mode.
     fn rigid_motion(&self, of: impl Fn(usize) -> f64) -> f64 {
         let rigid = self.modes.iter().enumerate().filter(|(_, mode)| mode.is_rigid());
         rigid.map(|(k, mode)| mode.shape * of(k)).sum()
@@ -473,7 +473,7 @@ impl Restitutions {
     }
 }
 
-/// Those of the modes that move the contact.
+/// Indices of the modes that move the contact.
 fn moved(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len()).filter(|&k| modes[k].is_excited()).collect()
 }

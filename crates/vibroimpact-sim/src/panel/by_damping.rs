@@ -21,26 +21,26 @@ use super::oscillator::{BodyMode, propagate, response_of};
 /// Terms of the series (2) for `|D t^2| <= 1`.
 const TERMS: usize = 10;
 
-/// Derivatives by the damping ratio of a mode of unit weight.
+/// Derivatives with respect to the damping ratio of a mode of unit weight.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ByDamping {
-    /// Of free motion over the step: of amplitude and rate at the end, by those at the start.
+    /// Free motion over the step: amplitude and rate at the end, each from amplitude and from rate at the start.
     pub free: [[f64; 2]; 2],
-    /// Of free motion at the nodes, from amplitude and from rate.
+    /// Free motion at the nodes, from amplitude and from rate.
     pub at_nodes: (Nodal, Nodal),
-    /// Of amplitude and rate at the end under unit Legendre forces.
+    /// Amplitude and rate at the end under unit Legendre forces.
     pub end: (Nodal, Nodal),
-    /// Of the response at the nodes to nodal forces.
+    /// Response at the nodes to nodal forces.
     pub compliance: Matrix,
 }
 
 impl ByDamping {
-    /// Over a step of `h` without forces.
+    /// The derivatives for a step of `h` without forces.
     pub fn of_free_motion(mode: &BodyMode, h: f64) -> ByDamping {
         ByDamping { free: free(mode, h), ..ByDamping::default() }
     }
 
-    /// Over a step of `h`.
+    /// The derivatives for a step of `h`.
     pub fn new(mode: &BodyMode, h: f64) -> ByDamping {
         let response = |t: f64| {
             response_of(mode, t, |t| {
@@ -96,7 +96,7 @@ mod tests {
         BodyMode { omega_rad_s: 1.0, damping_ratio }
     }
 
-    /// Everything at one damping ratio, by the ways of the march.
+    /// All values at one damping ratio, by the methods of time integration.
     fn all(mode: &BodyMode, h: f64) -> Vec<f64> {
         let whole = propagate(mode, h);
         let (Part { at_nodes, end }, compliance) = along(Way::of(mode, h), mode, h, &mut 2);

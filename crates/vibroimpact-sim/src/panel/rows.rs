@@ -37,7 +37,7 @@ impl<const R: usize> Rows<R> {
     }
 }
 
-/// The rows one by one: what makes an array by a closure is not inlined where the vector units are chosen.
+/// The rows are listed one by one, because an array made by a closure is not inlined where the vector unit is chosen.
 macro_rules! parts {
     ($count:literal: $($row:literal)*) => {
         impl Rows<$count> {

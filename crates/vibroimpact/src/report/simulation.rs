@@ -109,11 +109,11 @@ pub fn of_infinite_impact(
     report.table(&["result", ""], &rows);
     report.heading("What was modelled, and why");
     report.list(&[
-        "An infinite structure, as stated in the scene: no wave ever returns from an end or an edge.".to_owned(),
+        "The structure is infinite, as stated in the scene, so that no wave returns from an end or an edge.".to_owned(),
         match (summary.s, scene) {
-            (Some(s), _) => format!("Hertz contact. The impact depends on one number, S = {s}."),
-            (None, Some(scene)) => format!("Contact by the law {}.", scene.contact.law_name()),
-            (None, None) => "A contact law other than Hertz's.".to_owned(),
+            (Some(s), _) => format!("The contact law is hertz. The impact depends on the single parameter S = {s}."),
+            (None, Some(scene)) => format!("The contact law is {}.", scene.contact.law_name()),
+            (None, None) => "The contact law is not Hertz's.".to_owned(),
         },
         "The contact force follows from a Volterra equation, which is solved to rounding error, contact by contact."
             .to_owned(),
@@ -168,7 +168,7 @@ pub fn of_net_impact(
     report.table(&["result", ""], &rows);
     report.heading("What was modelled, and why");
     report.list(&[
-        format!("Model: {}.", literal(&answer.reason)),
+        format!("The model is {}.", literal(&answer.reason)),
         "This model gives the net result alone. The scene with `\"model\": \"modal\"` resolves contacts, motion and \
          energy in time."
             .to_owned(),
@@ -186,13 +186,19 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     let modes = &impact.structure.modes[..impact.kept_modes()];
     let hertz = |omega_rad_s: f64| quantity(omega_rad_s / std::f64::consts::TAU, "Hz");
     let range = match (modes.first(), modes.last()) {
-        (Some(first), Some(last)) => format!(", {} to {}", hertz(first.omega_rad_s), hertz(last.omega_rad_s)),
-        _ => ": the structure does not move".to_owned(),
+        (Some(first), Some(last)) => {
+            let (from, to) = (hertz(first.omega_rad_s), hertz(last.omega_rad_s));
+            match modes.len() {
+                1 => format!("There is one mode, of {from}."),
+                count => format!("There are {count} modes, from {from} to {to}."),
+            }
+        }
+        _ => "There are no modes: the structure does not move.".to_owned(),
     };
     let structure = match &scene.structure {
         Structure::Beam(beam) => format!(
-            "The structure by its modes, because it has ends from which waves return: {} beam of {} \
-             segment{}, damping ratio {} in every mode{}.",
+            "The structure is {} beam of {} segment{} with a damping ratio of {} in every mode{}. It is described by its \
+             modes, because waves return from its ends.",
             match beam.solved_by() {
                 Ok(BeamTheory::Timoshenko) => "a Timoshenko",
                 _ => "an Euler-Bernoulli",
@@ -208,21 +214,23 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
             }
         ),
         Structure::TautString(string) => format!(
-            "The structure by its modes: a string between two pinned ends, damping ratio {} in every mode.",
+            "The structure is a string between two pinned ends, described by its modes with a damping ratio of {}.",
             string.damping_ratio
         ),
         Structure::Plate(plate) => format!(
-            "The structure by its modes: a rectangular plate by {}'s theory, damping ratio {} in every mode.",
+            "The structure is a rectangular plate by {}'s theory, described by its modes with a damping ratio of {}.",
             if plate.theory == PlateTheory::Mindlin { "Mindlin" } else { "Kirchhoff" },
             plate.damping_ratio
         ),
-        Structure::DroppedRod(_) => "The rod by its rigid-body motions and its bending and axial modes, seen from the \
-                                     end that strikes."
-            .to_owned(),
-        _ => "The structure by the modes that the scene gives.".to_owned(),
+        Structure::DroppedRod(_) => {
+            "The structure is the rod, described by its rigid-body motions and its bending and \
+                                     axial modes at the end that strikes."
+                .to_owned()
+        }
+        _ => "The structure is described by the modes that the scene states.".to_owned(),
     };
     let residual = match impact.remainder_modes {
-        0 => "The truncated modes are left out altogether.".to_owned(),
+        0 => "The truncated modes are neglected.".to_owned(),
         count => format!(
             "{count} remainder modes represent the truncated modes, with their static compliance of {}, so that \
              the result converges in the number of modes.",
@@ -232,9 +240,9 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     vec![
         format!("The model is {}.", literal(reason)),
         structure,
-        format!("{} modes{range}.", modes.len()),
+        range,
         residual,
-        format!("{}; the contact law is {}.", striker(scene, impact), scene.contact.law_name()),
+        format!("{}. The contact law is {}.", striker(scene, impact), scene.contact.law_name()),
         format!(
             "The motion of the modes is exact, and only the contact force is approximated, with a tolerance of {} for the \
              restitution.",
@@ -246,11 +254,11 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
 fn striker(scene: &Scene, impact: &Impact) -> String {
     let speed = |speed_m_s: f64| quantity(speed_m_s, "m/s");
     match &scene.structure {
-        Structure::DroppedRod(_) => format!("A floor that does not move, met at {}", speed(scene.striker.speed_m_s)),
-        _ if impact.striker.mass_kg.is_infinite() => "A stop that does not move".to_owned(),
+        Structure::DroppedRod(_) => format!("The rod meets an immovable floor at {}", speed(scene.striker.speed_m_s)),
+        _ if impact.striker.mass_kg.is_infinite() => "The structure meets an immovable stop".to_owned(),
         _ => {
             let mass = quantity(impact.striker.mass_kg * 1e3, "g");
-            format!("A striker of {mass} at {}", speed(impact.striker.speed_m_s))
+            format!("The striker has {mass} and a speed of {}", speed(impact.striker.speed_m_s))
         }
     }
 }

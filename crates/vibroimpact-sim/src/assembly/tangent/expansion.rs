@@ -27,7 +27,7 @@ impl Expansion {
         change.critical.iter().filter_map(|(k, by_zeta)| Some((*k, *by_zeta, self.critical.get(k)?)))
     }
 
-    /// Adds to what `F` is weighed by what the responses of these modes change, with the products of the contacts' weights.
+    /// Adds the change of the responses of these modes to the weights of `F`, with the products of the contacts' weights.
     fn add_critical(&mut self, changes: &[Change], products: &[Vec<f64>]) {
         for (change, pairs) in changes.iter().zip(&mut self.changed) {
             for (k, by_zeta) in &change.critical {
@@ -48,7 +48,7 @@ impl Expansion {
 pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
 
 impl Expansions {
-    /// Of panels of this length with these contacts closed.
+    /// The expansion for panels of this length with these contacts closed.
     pub(super) fn of(&mut self, system: &System, changes: &[Change], h: f64, closed: &[usize]) -> Rc<Expansion> {
         let key = (h.to_bits(), closed.to_vec());
         if let Some(kept) = self.0.get(&key) {

@@ -346,8 +346,8 @@ impl Walk<'_> {
     }
 }
 
-/// `moved -= by F + c_1 psi (t F) - c_2 psi (t F' + 2 F)`, of what these forces make of the modes; the latter two where modes
-/// change.
+/// `moved -= by F + c_1 psi (t F) - c_2 psi (t F' + 2 F)`, where each force stands for the motion of the modes under it. The
+/// last two terms are for parameters that change frequencies or dampings.
 fn add_driven(moved: &mut [f64], (psi, by): (&[f64], &[f64]), factors: Option<[&[f64]; 2]>, driven: [&[f64]; 3]) {
     let n = moved.len();
     let [by_force, by_timed, by_again] = driven;
@@ -365,8 +365,8 @@ fn add_driven(moved: &mut [f64], (psi, by): (&[f64], &[f64]), factors: Option<[&
     );
 }
 
-/// How far free motion moves the sum of all modes at the nodes, and that sum at the start: of each mode from the amplitude and
-/// the rate that are made of its numbers.
+/// Displacement of the sum of all modes by free motion at the nodes, and that sum at the start. The amplitude and the rate of
+/// each mode are functions of its numbers.
 fn swept<const N: usize>(
     at_nodes: &[(Nodal, Nodal)],
     rows: [&[f64]; N],

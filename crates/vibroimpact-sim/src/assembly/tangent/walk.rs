@@ -44,11 +44,11 @@ pub(crate) struct Tangent {
 /// Derivatives of the state of a contact, which is passed from panel to panel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
-    /// Of the part of its overlap that does not come from the modes (m).
+    /// Derivative of the part of its overlap that does not come from the modes (m).
     pub reference: f64,
-    /// Of the numbers of its branch.
+    /// Derivatives of the numbers of its branch.
     pub branch: Numbers,
-    /// Of the memory of an open contact.
+    /// Derivatives of the memory of an open contact.
     pub memory: Numbers,
 }
 
@@ -84,7 +84,7 @@ pub(super) struct Walk<'a> {
     pub posed: &'a Posed<'a>,
     pub system: &'a System,
     pub changes: &'a [Change<'a>],
-    /// A weight of -1 for each mode that a contact sees, and whether any change moves modes.
+    /// A weight of -1 for each mode that moves a contact, and whether any parameter changes frequencies or dampings.
     pub units: Vec<Vec<Span>>,
     pub modes_move: bool,
     /// The loads on the panel at hand, and how they change.
