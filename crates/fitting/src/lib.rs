@@ -53,6 +53,7 @@ mod distributions;
 mod error;
 mod fit;
 mod gradient_method;
+mod incomplete;
 mod information;
 mod intervals;
 mod objective;
