@@ -328,3 +328,23 @@ fn the_nearest_graze_is_small_on_both_sides_of_a_graze() {
     }
     assert!(grazes >= 5, "{grazes}");
 }
+
+/// The one of the random impacts whose contact lasts only a thousandth of the period of its mode: the Taylor series of 32 digits must not
+/// step over it.
+#[test]
+fn a_contact_much_faster_than_all_modes_is_not_stepped_over() {
+    let posed = random_impacts().nth(115).unwrap();
+    let found = posed.differentiate(1e-9);
+    assert_eq!(found.solution.sub_impacts.len(), 1);
+    let derivatives = all(found.derivatives);
+    let end_s = found.solution.end_s;
+    for (own, reference) in derivatives.iter().zip(posed.in_32_digits(1, end_s)) {
+        let [start, end, impulse] = reference.unwrap().intervals[0];
+        let contact = &own.sub_impacts[0];
+        for (own, [reference, known]) in
+            [(contact.start_s, start), (contact.end_s, end), (contact.impulse_n_s, impulse)]
+        {
+            assert!((own.value - reference).abs() <= own.uncertainty.unwrap() + known, "{own:?} {reference} {known}");
+        }
+    }
+}

@@ -495,9 +495,12 @@ impl Series {
             let size = force[0].near.abs();
             longest = longest.min(reach(&force, size));
         }
-        let most =
-            xi.iter().enumerate().map(|(i, value)| value.near.abs() * longest.powi(i as i32)).fold(0.0, f64::max);
-        let length = number(longest.min(reach(&xi, most)));
+        // Relative to the largest term at the step length itself: if the contact is much faster than all modes, the terms at the longest
+        // step are so large that they allow a step over the whole contact.
+        let most = |length: f64| {
+            xi.iter().enumerate().map(|(i, value)| value.near.abs() * length.powi(i as i32)).fold(0.0, f64::max)
+        };
+        let length = number((0..8).fold(longest, |length, _| length.min(reach(&xi, most(length)))));
         let at = |values: &[Double], t: Double| values.iter().rev().fold(Double::default(), |sum, x| sum * t + *x);
         let margins = |t: Double| impact.margins(phase, touch, at(&xi, t), at(&rate, t));
         // The first point where an event function that was positive is not.
