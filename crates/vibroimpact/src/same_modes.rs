@@ -86,7 +86,11 @@ pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<Match>, 
         let i = later.min_by(|i, j| distance(*i).total_cmp(&distance(*j))).unwrap_or(k);
         if distance(i) > SAME {
             let elsewhere = (0..found.len()).any(|i| distance(i) <= SAME);
-            return Err(if elsewhere { "two modes swap their order" } else { "a mode changes abruptly" });
+            return Err(if elsewhere {
+                "two modes swap their order"
+            } else {
+                "a mode changes abruptly, or moves the point by no more than its rounding"
+            });
         }
         found.swap(k, i);
         let sign = mode.compared(&found[k], largest).1;

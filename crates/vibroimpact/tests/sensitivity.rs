@@ -442,6 +442,44 @@ fn derivatives_by_the_location_exist_near_both_ends() {
     }
 }
 
+/// Remainder modes follow from fewer computed modes on a step or an attached mass than next to it, which is part of their error.
+#[test]
+fn the_restitution_is_continuous_at_a_step_to_its_uncertainty() {
+    let step = changed("pinned-beam-converged.json", |tree| {
+        let mut segment = tree["structure"]["segments"][0].clone();
+        segment["length_m"] = json!(0.5);
+        let mut thinner = segment.clone();
+        thinner["thickness_m"] = json!(0.002);
+        tree["structure"]["segments"] = json!([segment, thinner]);
+    });
+    let mass = changed("timoshenko-beam.json", |tree| {
+        tree["structure"]["attachments"] = json!([{ "location_m": 0.5, "mass_kg": 0.01 }]);
+        tree["residual_compliance"] = json!(true);
+    });
+    for (mut tree, modes) in [(step.clone(), 40), (step, 100), (mass.clone(), 40), (mass, 100)] {
+        tree["modes"] = json!(modes);
+        let [before, on, after] = [0.5 - 1e-9, 0.5, 0.5 + 1e-9].map(|location| {
+            tree["location_m"] = json!(location);
+            let answer = Scene::from_value(&tree).unwrap().answer().unwrap();
+            (answer.restitution.unwrap(), answer.restitution_uncertainty.unwrap())
+        });
+        for (beside, _) in [before, after] {
+            assert!((beside - on.0).abs() < 0.1 * on.1, "{modes}: {beside} {on:?}");
+        }
+    }
+}
+
+/// The shapes at 1e-9 from a clamped end are 1e-14 of their largest values, and those at the neighbours are rounding.
+#[test]
+fn a_location_where_shapes_are_rounding_is_refused_with_the_reason() {
+    let tree = changed("pinned-beam-converged.json", |tree| {
+        tree["structure"]["ends"] = json!(["pinned", "clamped"]);
+        tree["location_m"] = json!(1.0 - 1e-10);
+    });
+    let refused = Scene::from_value(&tree).unwrap().sensitivity(&["location_m".to_owned()]).unwrap_err().to_string();
+    assert!(refused.contains("or moves the point by no more than its rounding"), "{refused}");
+}
+
 /// The curvature of the modes jumps at a step, so that the polynomial through neighbours on both sides does not have their slope.
 #[test]
 fn derivatives_by_the_location_are_correct_at_a_step() {
