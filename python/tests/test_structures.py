@@ -334,3 +334,13 @@ def test_unsolvable_or_unreadable_input_is_reported():
         structures.from_nastran(folder / "cantilever.op2", {"tip": (99, UP)})
     with pytest.raises(ValueError, match="no eigenvectors"):
         structures.from_nastran(folder / "cantilever-tip.op2", {"tip": (21, UP)})
+
+
+def test_masses_and_damping_that_no_structure_has_are_refused():
+    pytest.importorskip("scipy")
+    k = np.array([[2.0, -1.0], [-1.0, 1.0]])
+    for mass in (-np.eye(2), np.diag([1.0, 0.0])):
+        with pytest.raises(ValueError, match="count = 1 is not allowed; it must be a number of modes that stiffness and mass have"):
+            structures.from_matrices(k, mass, {"tip": 1}, 1)
+    with pytest.raises(ValueError, match=r"damping_ratios = -1.0 is not allowed; it must be 0 or a positive number"):
+        structures.from_matrices(k, np.eye(2), {"tip": 1}, 1, damping_ratios=-1)

@@ -44,7 +44,7 @@ def from_matrices(
     stiffness matrix, which distinguishes rigid-body modes from elastic ones: 1e-7 for a file with seven digits.
     """
     from scipy.sparse import bmat, csc_array
-    from scipy.sparse.linalg import eigsh, splu
+    from scipy.sparse.linalg import ArpackError, eigsh, splu
 
     k, m = _matrix("stiffness", stiffness), _matrix("mass", mass)
     size = k.shape[0]
@@ -61,7 +61,13 @@ def from_matrices(
         shift = -1e-9 * float(abs(k.diagonal()).sum() / abs(m.diagonal()).sum())
     # A random start would make every run differ.
     start = np.random.default_rng(0).standard_normal(size)
-    _, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
+    try:
+        _, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
+    except ArpackError as error:
+        raise ValueError(
+            f"count = {count} is not allowed; it must be a number of modes that stiffness and mass have: fewer than the degrees of "
+            f"freedom with mass, and a mass matrix without negative eigenvalues ({error})"
+        ) from error
     vectors = vectors / np.sqrt(np.einsum("ij,ij->j", vectors, m @ vectors))
     eigenvalues = np.einsum("ij,ij->j", vectors, k @ vectors)
     order = np.argsort(eigenvalues)

@@ -51,6 +51,8 @@ class Structure:
         self.shapes = {name: _numbers(f"shapes of {name}", shape, count) for name, shape in self.shapes.items()}
         if self.damping_ratios is not None:
             self.damping_ratios = _numbers("damping_ratios", self.damping_ratios, count)
+            if np.any(self.damping_ratios < 0.0):
+                raise ValueError(f"damping_ratios = {self.damping_ratios.min()} is not allowed; it must be 0 or a positive number")
         for name, compliance in self.static_compliances_m_n.items():
             if name not in self.shapes:
                 raise ValueError(f"static compliance of {name!r} is not allowed; it must be one of the points {list(self.shapes)}")
