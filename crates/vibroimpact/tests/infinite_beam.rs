@@ -168,7 +168,7 @@ fn every_law_is_solved_and_reported_in_the_same_form() {
             let text = stdout(&run(folder.path(), &["simulate", "scene.json", "--report", "report.html"]));
             let name = law["law"].as_str().unwrap();
             assert!(text.contains(&format!("infinite {kind}; {name} contact")) && !text.contains("\n  S  "), "{text}");
-            assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(&format!("law {name}")));
+            assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(&format!("law is {name}")));
             if kind == "beam" {
                 let section = tree["structure"].as_object_mut().unwrap();
                 section.remove("kind");
