@@ -10,6 +10,7 @@ h1 { font-size: 1.7rem; text-wrap: balance } h2 { font-size: 1.25rem; margin-top
 table { border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0; display: block; overflow-x: auto }
 th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 th { border-bottom: 2px solid #888 }
+td:last-child { min-width: 5.5rem }
 svg { display: block; max-width: 100%; height: auto; margin: 1rem auto 0 }
 pre { background: #f4f4f4; padding: 0.7rem 1rem; overflow-x: auto; font-size: 0.85rem; line-height: 1.35 }
 pre code { background: none; padding: 0 }
