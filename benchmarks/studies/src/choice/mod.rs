@@ -89,8 +89,7 @@ mod tests {
         let out = folder.path().to_path_buf();
         run(&Wanted { quick: true, first: 0, scenes: None, resume: false, out }).unwrap();
         let report = fs::read_to_string(folder.path().join("report.md")).unwrap();
-        let headings =
-            ["Said to have converged, and beyond the tolerance:", "Beyond the stated uncertainty:", "Not converged:"];
+        let headings = ["but are beyond the tolerance:", "Answers beyond the stated uncertainty:", "Not converged:"];
         for pair in headings.windows(2) {
             let (_, after) = report.split_once(pair[0]).unwrap();
             let (section, _) = after.split_once(pair[1]).unwrap();

@@ -111,20 +111,12 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
         };
         study.table(&headers(name), &groups.into_iter().map(line).collect::<Vec<_>>());
     }
-    listed(
-        study,
-        "Answers that are said to have converged, but are beyond the \
-                   tolerance:",
-        rows,
-        |row| row.settled && !row.meets(),
-    );
-    listed(
-        study,
-        "Answers beyond the stated \
-                   uncertainty:",
-        rows,
-        |row| row.overrun().is_some_and(|overrun| overrun > 1.0),
-    );
+    listed(study, "Answers that are said to have converged, but are beyond the tolerance:", rows, |row| {
+        row.settled && !row.meets()
+    });
+    listed(study, "Answers beyond the stated uncertainty:", rows, |row| {
+        row.overrun().is_some_and(|overrun| overrun > 1.0)
+    });
     listed(study, "Not converged:", rows, |row| row.chosen && !row.settled);
     picture(study, rows)
 }
