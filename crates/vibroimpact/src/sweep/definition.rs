@@ -209,14 +209,23 @@ impl Sweep {
 
     /// The scene with these values of the varied fields.
     pub(super) fn scene_with(&self, values: &[Value]) -> Result<AnyScene, InvalidInput> {
-        let mut tree = self.scene.clone();
+        self.scene_in(&mut self.scene.clone(), values)
+    }
+
+    /// The same in a copy of the scene's tree, which serves for many points.
+    pub(super) fn scene_in(&self, tree: &mut Value, values: &[Value]) -> Result<AnyScene, InvalidInput> {
         for (field, value) in self.fields().zip(values) {
-            let set = field.set(&mut tree, value.clone());
+            let set = field.set(tree, value.clone());
             set.map_err(|reason| {
                 InvalidInput::new(field.path().clone(), quote(value), format!("a field of the scene, but {reason}"))
             })?;
         }
-        AnyScene::from_value(&tree)
+        AnyScene::from_value(tree)
+    }
+
+    /// The scene as a tree, before fields are varied.
+    pub(super) fn tree(&self) -> &Value {
+        &self.scene
     }
 
     /// The scene of a point.

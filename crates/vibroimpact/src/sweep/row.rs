@@ -21,22 +21,24 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Kind)> {
 
 /// The line of column names.
 pub(super) fn header(sweep: &Sweep) -> Vec<u8> {
-    line(columns(sweep).into_iter().map(|(name, _)| name))
+    lines([columns(sweep).into_iter().map(|(name, _)| name)])
 }
 
 /// The lines of a chunk, computed one after the other; `None` if `stop` interrupted it.
 pub(super) fn rows(sweep: &Sweep, chunk: u64, kept: &mut Kept, stop: impl Fn() -> bool) -> Option<Vec<u8>> {
-    let mut lines = Vec::new();
-    for point in sweep.first_of_chunk(chunk)..sweep.first_of_chunk(chunk + 1) {
+    let mut scene = sweep.tree().clone();
+    let mut row = |point| {
         if stop() {
             return None;
         }
         let values = sweep.values(point);
-        let solved = evaluate(sweep.scene_with(&values), sweep.results(), kept, &stop)?;
+        let solved = evaluate(sweep.scene_in(&mut scene, &values), sweep.results(), kept, &stop)?;
         let results = solved.unwrap_or_else(|error| sweep.results().failed(error));
-        lines.extend(line(std::iter::once(point.to_string()).chain(values.iter().map(cell)).chain(results)));
-    }
-    Some(lines)
+        Some(std::iter::once(point.to_string()).chain(values.iter().map(cell)).chain(results).collect())
+    };
+    let points = sweep.first_of_chunk(chunk)..sweep.first_of_chunk(chunk + 1);
+    let rows: Vec<Vec<String>> = points.map(&mut row).collect::<Option<_>>()?;
+    Some(lines(rows))
 }
 
 /// A value of a varied field: numbers and texts as they are, anything else as JSON.
@@ -48,13 +50,15 @@ pub(super) fn cell(value: &Value) -> String {
     }
 }
 
-/// One line of a table. A line break within a cell becomes a space, so that rows and lines are the same.
-pub(super) fn line(cells: impl Iterator<Item = String>) -> Vec<u8> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let cells = cells.map(|cell| if cell.contains(['\n', '\r']) { cell.replace(['\n', '\r'], " ") } else { cell });
-    // writing to memory cannot fail
-    let written = table.write_record(cells.map(String::into_bytes)).is_ok();
-    debug_assert!(written);
+/// Lines of a table. A line break within a cell becomes a space, so that rows and lines are the same.
+pub(super) fn lines(rows: impl IntoIterator<Item = impl IntoIterator<Item = String>>) -> Vec<u8> {
+    let mut table = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+    let whole = |cell: String| if cell.contains(['\n', '\r']) { cell.replace(['\n', '\r'], " ") } else { cell };
+    for cells in rows {
+        // writing to memory cannot fail
+        let written = table.write_record(cells.into_iter().map(|cell| whole(cell).into_bytes())).is_ok();
+        debug_assert!(written);
+    }
     table.into_inner().unwrap_or_default()
 }
 

@@ -5,7 +5,7 @@ use super::estimate::OutputDistribution;
 use super::figure::Estimate;
 use crate::scene::json::number;
 use crate::sweep::definition::Sweep;
-use crate::sweep::row::{Row, cell, line};
+use crate::sweep::row::{Row, cell, lines};
 
 /// The distribution of every output at a point of the grid; `None` for an output that no draw has.
 pub(in crate::sweep) type Distributions = Vec<Option<OutputDistribution>>;
@@ -78,7 +78,7 @@ pub(in crate::sweep) fn table(sweep: &Sweep, found: &[Distributions]) -> Vec<u8>
     let names: Vec<String> = most.unwrap_or_default().into_iter().map(|(name, _)| name).collect();
     let with_error = |name: &String| [name.clone(), format!("{name}_standard_error")];
     let counts = ["output", "draws", "with_value"].map(str::to_owned);
-    let mut rows = line(axes.chain(counts).chain(names.iter().flat_map(with_error)));
+    let mut rows: Vec<Vec<String>> = vec![axes.chain(counts).chain(names.iter().flat_map(with_error)).collect()];
     for (place, found) in found.iter().enumerate() {
         let values = sweep.values(place as u64 * sweep.draws());
         for (output, found) in outputs().zip(found) {
@@ -88,10 +88,10 @@ pub(in crate::sweep) fn table(sweep: &Sweep, found: &[Distributions]) -> Vec<u8>
             let told = found.iter().flat_map(figures).flat_map(|(_, it)| [number(it.value), known(it.standard_error)]);
             let empty = std::iter::repeat(String::new());
             let cells = told.chain(empty).take(2 * names.len());
-            rows.extend(line(axes.chain(counts.map(|count| count.to_string())).chain(cells)));
+            rows.push(axes.chain(counts.map(|count| count.to_string())).chain(cells).collect());
         }
     }
-    rows
+    lines(rows)
 }
 
 /// All figures of a distribution by their column.
