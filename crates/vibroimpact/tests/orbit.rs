@@ -53,17 +53,17 @@ fn the_steady_motion_is_found_with_its_multipliers() {
     assert!(text.contains("stable") && text.contains("Floquet multipliers"), "{text}");
 }
 
-/// The damper's motion is irregular for a thousand periods before it converges to one of four periods. The masses of the second
-/// scene lose no energy, so that no transient converges.
+/// The damper's motion is irregular for a thousand periods or more before it converges to one of four periods. The masses of the second
+/// scene lose no energy, so that no transient converges; whether the motion that is found is stable depends on rounding.
 #[test]
 fn near_returns_of_a_long_motion_lead_to_periodic_ones() {
-    for (name, periods, stable) in [("impact-damper", "4", true), ("sdnd125", "1", true)] {
+    for (name, periods, stable) in [("impact-damper", "4", Some(true)), ("sdnd125", "1", None)] {
         let scene = datasets(&format!("assemblies/{name}.json")).display().to_string();
         let found: Value =
             serde_json::from_str(&stdout(&run(Path::new("."), &["orbit", &scene, "--periods", periods, "--json"])))
                 .unwrap();
         assert_eq!(found["outcome"], "found", "{name}");
-        assert_eq!(found["stable"], stable, "{name}");
+        assert!(stable.is_none() || found["stable"].as_bool() == stable, "{name}");
         assert!(found["closure"].as_f64().unwrap() < 1e-9);
         // Without a search, the transient leads to none.
         let arguments = ["orbit", &scene, "--periods", periods, "--search", "0", "--json"];

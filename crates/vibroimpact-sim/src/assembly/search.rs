@@ -2,7 +2,8 @@
 //!
 //! A motion that converges to a periodic one may need thousands of periods, and a chaotic one never converges. Both come near
 //! periodic motions, stable or not, and then nearly repeat themselves. Of a long motion the states once in each period of the loads
-//! are compared with those `n` periods later, and Newton's method begins at the nearest returns.
+//! are compared with those `n` periods later, and Newton's method begins at the nearest returns. The first stable motion that it finds
+//! is the result, or else the first motion: which returns are nearest depends on rounding if the motion is chaotic.
 
 use super::orbit::{OrbitOutcome, OrbitSettings, PeriodMap, Reached, Recurrence, refine};
 use super::problem::Assembly;
@@ -89,12 +90,17 @@ fn from_returns<L: ContactLaw + Clone>(
         Ok(section) => section,
         Err(outcome) => return Ok(stopped(outcome, closure)),
     };
+    let mut unstable = None;
     for k in section.nearest_returns(settings.forcing_periods as usize) {
         match from_start(assembly, settings, stop, section.states[k].clone(), 0)? {
             OrbitOutcome::NotFound { closure: found, .. } => closure = closure.min(found),
             OrbitOutcome::Stopped(outcome) if outcome != Outcome::Stopped(Reason::Interrupted) => {}
+            OrbitOutcome::Found(orbit) if !orbit.stable => unstable = unstable.or(Some(orbit)),
             found => return Ok(found),
         }
+    }
+    if let Some(orbit) = unstable {
+        return Ok(OrbitOutcome::Found(orbit));
     }
     let map = PeriodMap::new(assembly.clone(), &of_one, stop)?;
     Ok(match section.separation(&map)? {
