@@ -216,6 +216,30 @@ fn a_dropped_ball_bounces_forever_on_an_elastic_floor() {
     compare(&assembly, 0.3, 1e-9);
 }
 
+/// A constant force pulls the ball away from the wall that it strikes, so that the motion without contact would turn around too.
+/// The force takes as much energy on the way in as it returns on the way out.
+#[test]
+fn a_ball_that_is_pulled_away_rebounds_as_fast_as_it_came() {
+    for k in 0..40 {
+        let pull_n = 10f64.powf(-1.0 + 3.0 * f64::from(k) / 39.0);
+        let ball = Body::mass(0.0643584, 1.1e-5, -0.178);
+        let law = Law::Hertz(Hertz::new(2.757e6).unwrap());
+        let contact = Contact { sides: [mass(0, 0.0643584), Point::Ground], gap_m: 0.0, law };
+        let load =
+            Load { body: 0, shape: vec![0.0643584f64.sqrt().recip()], force: Force::Constant { force_n: pull_n } };
+        let assembly = Assembly { bodies: vec![ball], contacts: vec![contact], loads: vec![load] };
+        let (run, seen) = solve(&assembly, 0.05, 1e-9);
+        let touches = 0.5 * 0.0643584 * 0.178f64.powi(2) > pull_n * 1.1e-5;
+        assert_eq!(run.outcome, Outcome::End, "{pull_n} N");
+        assert_eq!(seen.len(), usize::from(touches), "{pull_n} N");
+        for (_, interval) in seen {
+            let [before, after] =
+                [Some(interval.approach_speed_m_s), interval.separation_speed_m_s].map(Option::unwrap);
+            assert!((after - before).abs() < 1e-8 * 0.178, "{pull_n} N: {before} and {after} m/s");
+        }
+    }
+}
+
 #[test]
 fn newtons_cradle_transfers_the_impact() {
     let law = Law::from(Hertz::new(1e9).unwrap());

@@ -7,6 +7,7 @@ mod assembly_hard;
 mod assembly_long;
 mod assembly_orbit;
 mod assembly_physics;
+mod assembly_random;
 mod assembly_single;
 mod common;
 mod differentiate;

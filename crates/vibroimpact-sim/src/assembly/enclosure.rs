@@ -178,7 +178,7 @@ impl FlightBounds {
         noise: impl Fn() -> f64,
         (amplitude, mode_rate): (&[f64], &[f64]),
     ) -> f64 {
-        let (mut next, mut best) = (0, 0.0f64);
+        let (mut next, mut best, mut rounding) = (0, 0.0f64, None);
         let row = link.in_a_row.as_ref().map(|Span { modes, psi }| {
             let (a, b) = (&amplitude[modes.clone()], &mode_rate[modes.clone()]);
             (psi.as_slice(), a, b)
@@ -197,9 +197,12 @@ impl FlightBounds {
             (overlap, rate, next) = (overlap + moved, rate + speed, cut);
             let curvature = curvature + bend;
             let mut separation = -overlap - above;
-            // surfaces that have just parted overlap by rounding
-            if above == 0.0 && separation < 0.0 && separation >= -noise() {
-                separation = 0.0;
+            // surfaces that have just parted overlap by rounding, within which the modes above move, too
+            if separation < 0.0 {
+                let noise = *rounding.get_or_insert_with(&noise);
+                if above <= noise && separation >= -noise {
+                    separation = 0.0;
+                }
             }
             // a parabola that is still above zero at the best time yet has its root beyond it
             let at_best = separation - best * (rate + 0.5 * curvature * best);

@@ -11,7 +11,7 @@
 //! too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is tested. If the tested function is
 //! negative before it was ever positive, the branch ends where it begins.
 //!
-//! Such a start depends on the sign of a small number. Whether surfaces that touch without speed and without force separate or
+//! A start without slope depends on the sign of a small number. Whether surfaces that touch without speed and without force separate or
 //! press each other follows from the forces of other contacts. These forces are polynomials with a truncation error `e`, which
 //! leaves the second derivative of the overlap uncertain by `sum_c' W_cc' e_c'`, where `W` is the inverse mass of an impulse of
 //! `c'` at the contact. A shorter panel does not help, because the relative truncation error of a force that begins like a power
@@ -81,14 +81,17 @@ impl EventFunction {
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
         let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
         let Beginning { slope, bend, unresolved } = beginning();
+        let begins_level = slope.abs() <= self.noise + self.slope_residue;
         Some(match bend {
             // the slope at the start is better known than those that are quotients
-            Some(bend) if slope.abs() <= self.noise + self.slope_residue => {
+            Some(bend) if begins_level => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
                 let noise = noise / BASIS.nodes[0] + unresolved;
                 Question::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, noise, true)
             }
-            _ => Question::new(&with(slope, &slopes), rho_slope, noise + unresolved, true),
+            None if begins_level => Question::new(&with(slope, &slopes), rho_slope, noise + unresolved, true),
+            // a shorter panel resolves a slope that is not zero
+            _ => Question::new(&with(slope, &slopes), rho_slope + unresolved, noise, true),
         })
     }
 }

@@ -169,12 +169,17 @@ impl<'a> March<'a> {
             After::Release(memory) => {
                 let (overlap, _) = self.overlap_of_modes(c);
                 let (now, rate) = (self.time_s, self.states[c].rate);
-                if let Some(interval) = self.states[c].finish(Some((now, rate))) {
+                // surfaces that part where they have met, under the forces of other contacts, were not in contact
+                let lasted = touch.interval.start_s < now;
+                if lasted && let Some(interval) = self.states[c].finish(Some((now, rate))) {
                     self.observer.interval(c, &interval);
+                    self.intervals += 1;
                 }
-                self.intervals += 1;
                 let state = &mut self.states[c];
                 // the law determines where the surfaces separate, not the sum over the modes
+                if state.overlap <= memory.touch_m + residue {
+                    state.overlap = state.overlap.min(memory.touch_m);
+                }
                 state.reference += state.overlap - overlap;
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.forget_horizons();
@@ -207,12 +212,18 @@ impl<'a> March<'a> {
         let Some(touch) = self.states[c].touch() else { return J_MIN };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);
         series[0] = self.states[c].overlap;
+        let largest = series.map(f64::abs);
         let law = self.law(c);
         let allowed = self.impulse_tolerance(c) / SINGULAR;
         let small = |j: i32| {
             let h = step_s(j);
-            let [compression, rate, _] = value(&series, h.min(self.reach));
-            let compression = compression + rate.max(0.0) * (h - h.min(self.reach));
+            let within = h.min(self.reach);
+            let [mut compression, mut rate, _] = value(&series, within);
+            if rate < 0.0 {
+                // the surfaces approach and recede within the panel: the end does not tell how far they overlap before
+                [compression, rate, _] = value(&largest, within);
+            }
+            let compression = compression + rate.max(0.0) * (h - within);
             law.force(&touch.branch, compression, rate).force_n * h <= allowed
         };
         // the force at the end of a panel grows with the panel

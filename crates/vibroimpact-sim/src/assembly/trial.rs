@@ -11,6 +11,10 @@ use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, dot, slopes, work
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 const NEWTON_SHARE: f64 = 1e-2;
 
+/// A force is extrapolated by at most this many panels for a first guess. Beyond, its value at the end is a better guess: a terminal
+/// panel can be many orders shorter than the next one.
+const FARTHEST: f64 = 8.0;
+
 /// A trial panel; its memory is reused.
 #[derive(Default)]
 pub(super) struct Trial<'a> {
@@ -96,7 +100,8 @@ impl<'a> March<'a> {
             let state = &self.states[c];
             let touch = state.touch()?;
             let guess = touch.previous.map_or([0.0; Q], |(force, length)| {
-                force.at_each(&BASIS.nodes.map(|s| 1.0 + s * h / length)).map(|force| force.max(0.0))
+                let ahead = if h <= FARTHEST * length { h / length } else { 0.0 };
+                force.at_each(&BASIS.nodes.map(|s| 1.0 + s * ahead)).map(|force| force.max(0.0))
             });
             Some(Unknown {
                 law: self.law(c),

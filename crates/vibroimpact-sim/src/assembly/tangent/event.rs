@@ -234,14 +234,32 @@ impl Walk<'_> {
             self.touches =
                 [if rests { self.touches[0] } else { self.touches[0].min(speed) }, self.touches[1].max(speed)];
             let followed = &mut self.contacts[c];
-            followed.interval = self.begun;
+            (followed.interval, followed.since_s) = (self.begun, at_s);
             self.begun += 1;
             followed.peaks = [0.0; 2];
             followed.overlap = if overlaps { overlap } else { followed.memory.touch_m };
         }
         match after {
             After::Continue(branch) => self.contacts[c].branch = Some(branch),
-            After::Release(memory) => (self.contacts[c].branch, self.contacts[c].memory) = (None, memory),
+            After::Release(memory) => {
+                (self.contacts[c].branch, self.contacts[c].memory) = (None, memory);
+                if followed.since_s == at_s {
+                    self.take_back(followed.interval);
+                }
+            }
         }
+    }
+
+    /// Forgets an interval that ended when it began, which the run does not report either.
+    fn take_back(&mut self, interval: usize) {
+        for tangent in &mut self.tangents {
+            if interval < tangent.intervals.len() {
+                tangent.intervals.remove(interval);
+            }
+        }
+        for followed in self.contacts.iter_mut().filter(|followed| followed.interval > interval) {
+            followed.interval -= 1;
+        }
+        self.begun -= 1;
     }
 }

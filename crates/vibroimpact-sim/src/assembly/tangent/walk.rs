@@ -75,8 +75,9 @@ pub(super) struct Followed {
     pub rate: f64,
     /// Sizes of overlap and rate so far.
     pub sizes: [f64; 2],
-    /// The present interval, its largest force and compression.
+    /// The present interval, when it began (s), its largest force and compression.
     pub interval: usize,
+    pub since_s: f64,
     pub peaks: [f64; 2],
 }
 
@@ -118,6 +119,7 @@ impl<'a> Walk<'a> {
             rate: 0.0,
             sizes: [0.0; 2],
             interval: 0,
+            since_s: 0.0,
             peaks: [0.0; 2],
         };
         let tangent = |change: &Change| Tangent {
