@@ -197,8 +197,8 @@ impl FlightBounds {
             (overlap, rate, next) = (overlap + moved, rate + speed, cut);
             let curvature = curvature + bend;
             let mut separation = -overlap - above;
-            // surfaces that have just parted overlap by rounding, within which the modes above move, too
-            if separation < 0.0 {
+            // surfaces that have just parted overlap by rounding, within which the modes above may move, too
+            if separation < 0.0 && (above == 0.0 || self.uses == 0) {
                 let noise = *rounding.get_or_insert_with(&noise);
                 if above <= noise && separation >= -noise {
                     separation = 0.0;
