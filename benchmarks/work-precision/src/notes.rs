@@ -4,14 +4,17 @@ use crate::{impact, infinite};
 
 /// Subject of the page.
 pub const INTRODUCTION: &str = "\
-This page shows how much time the solvers of the workspace and their peers need for a given error. On a fixed library of problems each solver runs at a series of tolerances, and its error is shown against its time and against a deterministic cost. A time is \
+This page shows how much time the solvers of the workspace and their peers need for a given error. On a fixed \
+library of problems each solver runs at a series of tolerances, and its error is shown against its time and against \
+a deterministic cost. A time is \
 the shortest of repeated runs after a warm-up. A run that fails or takes too long is listed under its figure, and \
 tighter settings are then not tried. `work-precision.csv` has every number, in every norm.
 
 The peers are DOP853, Hairer's explicit pair of order 8 (crate `ivp`), with events by repeated steps, and diffsol, \
 with BDF of variable order and ESDIRK of order 4, an analytic Jacobian and its own root finding. All of them \
 integrate phase by phase, restart at every change of contact, and use absolute tolerances scaled to each \
-component. They are given the time at which the impact ends, which they cannot determine themselves. *+ exact flight* means that between \
+component. They are given the time at which the impact ends, which they cannot determine themselves. *+ exact \
+flight* means that between \
 contacts the modes are propagated in closed form and a certified search finds the next contact, so that the solver \
 integrates contacts alone. Our solver is measured with all tables built for every impact, and with the tables \
 cached (*tables kept*), as for many impacts on one beam.";
@@ -35,12 +38,16 @@ happens. This explains the first ratio. Given exact flight, it integrates contac
 explicit steps each, and the ratio is that of the cost of a step. A single impact then also pays for our tables of \
 the structure. They cost half as much as the impact itself, and the second impact on the same beam repays them.
 
-The target of fifty times the speed of the best explicit solver on the whole system would require that steps in contact take no more than [their operations](performance.md), and that flights, terminal steps and control cost nothing. This limits the ratio wherever the target is missed. The implicit solvers, and those of the thesis and of textbooks, are far slower (figures \
+The target of fifty times the speed of the best explicit solver on the whole system would require that steps in \
+contact take no more than [their operations](performance.md), and that flights, terminal steps and control cost \
+nothing. This limits the ratio wherever the target is missed. The implicit solvers, and those of the thesis and of \
+textbooks, are far slower (figures \
 below). At errors above 1e-4 every solver takes as few steps as it can, so there the ratio is that of the least \
 cost of a contact.
 
 Among the Volterra methods the second-order rules are cheap at two or three digits, with as few steps as are \
-measured here. Only a second run shows how many steps this takes (*to a tolerance, with its error* includes both runs). With eight nodes and a long first panel, collocation reaches six more digits in the same time.";
+measured here. Only a second run shows how many steps this takes (*to a tolerance, with its error* includes both \
+runs). With eight nodes and a long first panel, collocation reaches six more digits in the same time.";
 
 /// Description of a problem, its norms, and its reference.
 pub fn about(problem: &str) -> String {

@@ -11,12 +11,12 @@
 //! too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is tested. If the tested function is
 //! negative before it was ever positive, the branch ends where it begins.
 //!
-//! A start without slope depends on the sign of a small number. Whether surfaces that touch without speed and without force separate or
-//! press each other follows from the forces of other contacts. These forces are polynomials with a truncation error `e`, which
-//! leaves the second derivative of the overlap uncertain by `sum_c' W_cc' e_c'`, where `W` is the inverse mass of an impulse of
-//! `c'` at the contact. A shorter panel does not help, because the relative truncation error of a force that begins like a power
-//! of time is the same on every panel. This uncertainty is treated like rounding: an event function within it counts as zero.
-//! The force that the contact may have meanwhile is smaller than these errors by its stiffness times the square of the panel.
+//! A start without slope depends on the sign of a small number. Whether surfaces that touch without speed and without force
+//! separate or press each other follows from the forces of other contacts. These forces are polynomials with a truncation error
+//! `e`, which leaves the second derivative of the overlap uncertain by `sum_c' W_cc' e_c'`, where `W` is the inverse mass of an
+//! impulse of `c'` at the contact. A shorter panel does not help, because the relative truncation error of a force that begins like
+//! a power of time is the same on every panel. This uncertainty is treated like rounding: an event function within it counts as
+//! zero. The force that the contact may have meanwhile is smaller than these errors by its stiffness times the square of the panel.
 
 use crate::panel::legendre::{BASIS, Nodal, Q};
 use std::sync::LazyLock;
