@@ -82,6 +82,11 @@ impl Law {
         each!(self, law => law.validated().map(Law::from))
     }
 
+    /// Whether a complete contact returns all work that compresses it, whatever the parameters.
+    pub fn conserves_energy(&self) -> bool {
+        matches!(self, Law::Hertz(_) | Law::LinearSpring(_) | Law::Power(_))
+    }
+
     /// Rebound speed over approach speed of a rigid striker at an immovable wall covered by this law (the thesis's `N = 0`), to
     /// rounding from closed or implicit relations; for felt by integration, to about 1e-12.
     ///

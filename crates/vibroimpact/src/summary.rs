@@ -87,7 +87,7 @@ pub struct Contact {
     pub peak_compression_m: f64,
 }
 
-/// The energy balance (J). The residual is the initial energy minus all other parts, a measure of accuracy.
+/// The energy balance (J). The residual is the initial energy minus all other parts, and consists of their rounding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Energy {
     /// Before the impact.
@@ -98,12 +98,28 @@ pub struct Energy {
     pub structure_j: f64,
     /// Dissipated by modal damping until the last separation.
     pub modal_damping_j: f64,
-    /// Dissipated in the contact.
+    /// Dissipated in the contact: the work of its force over the compression. Under a law without losses this is the error of the
+    /// computed force.
     pub contact_j: f64,
     /// The residual of the balance.
     pub residual_j: f64,
     /// Final energy of each mode, remainder modes last.
     pub modes_j: Vec<f64>,
+    /// Whether all contacts have ended under a law without losses.
+    #[serde(skip)]
+    pub contact_conserves: bool,
+}
+
+impl Energy {
+    /// What the contact dissipates by its law, and what the balance does not account for, as they are printed.
+    pub(crate) fn loss_and_residual(&self) -> [f64; 2] {
+        loss_and_residual(self.contact_j, self.residual_j, self.contact_conserves)
+    }
+}
+
+/// The computed loss of contacts is an error if their laws lose nothing, and then belongs to the residual.
+pub(crate) fn loss_and_residual(loss_j: f64, residual_j: f64, conserve: bool) -> [f64; 2] {
+    if conserve { [0.0, residual_j + loss_j] } else { [loss_j, residual_j] }
 }
 
 /// Deterministic counts of the work for the recorded solution, without those for its uncertainty.
@@ -151,6 +167,8 @@ impl Summary {
                 contact_j: energy.contact_j,
                 residual_j: energy.residual_j,
                 modes_j: energy.modes_j,
+                contact_conserves: impact.law.conserves_energy()
+                    && solution.sub_impacts.iter().all(|contact| contact.end_s.is_finite()),
             },
             counts: Cost { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps },
             choice: None,

@@ -71,6 +71,18 @@ fn simulate_without_json_is_for_readers() {
 }
 
 #[test]
+fn springs_without_losses_lose_nothing_in_print() {
+    let folder = tempfile::tempdir().unwrap();
+    let cradle = [&scene("newtons-cradle"), "--set", "tolerance=1e-4"];
+    let text = stdout(&run(folder.path(), &[&["simulate"], &cradle[..]].concat()));
+    let result = stdout(&run(folder.path(), &[&["simulate", "--json"], &cradle[..]].concat()));
+    let result: Value = serde_json::from_str(&result).unwrap();
+    let work_j = result["energy"]["contact_loss_j"].as_f64().unwrap();
+    let lines = format!("    lost in contacts        0 J\n    unaccounted             {work_j:.0e} J\n");
+    assert!(work_j != 0.0 && text.contains(&lines), "{lines}\nin\n{text}");
+}
+
+#[test]
 fn out_writes_intervals_histories_picture_and_report() {
     let folder = tempfile::tempdir().unwrap();
     let printed = stdout(&run(folder.path(), &["simulate", &scene("rattling-gear"), "--json", "--out", "a"]));

@@ -52,18 +52,15 @@ fn the_demo_needs_no_file_and_writes_none_unasked() {
         assert!(text.contains(part), "{part} in\n{text}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-    // Hertz's law loses nothing, up to the error of the solution, which rounds to zero.
-    let rubber = [
-        "demo",
-        "--set",
-        "location_m=0.5",
-        "--set",
-        "striker.material=rubber",
-        "--set",
-        "contact.striker_material=rubber",
-    ];
-    let text = stdout(&run(folder.path(), &rubber));
-    assert!(!text.contains("-0.00 %"), "{text}");
+    // Hertz's law loses nothing, so the work of the computed force is an error.
+    let result: Value = serde_json::from_str(&stdout(&run(folder.path(), &["demo", "--json"]))).unwrap();
+    let [work_j, rounding_j] = ["contact_j", "residual_j"].map(|key| result["energy"][key].as_f64().unwrap());
+    assert!(work_j != 0.0 && rounding_j.abs() < 1e-3 * work_j.abs(), "{work_j} {rounding_j}");
+    let lines = format!("    contact                      0 J\n    unaccounted{:>21}\n", format!("{work_j:.0e} J"));
+    assert!(text.contains(&lines), "{lines}\nin\n{text}");
+    // a law with losses states them, however small
+    let lossy = ["demo", "--set", "contact.law=hunt-crossley", "--set", "contact.restitution=0.9999"];
+    assert!(!stdout(&run(folder.path(), &lossy)).contains("contact                      0 J"));
 
     let text = stdout(&run(folder.path(), &["demo", "--plot", "demo.svg", "--report", "demo.html"]));
     assert!(text.contains("wrote demo.svg") && text.contains("wrote demo.html"), "{text}");

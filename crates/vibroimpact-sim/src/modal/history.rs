@@ -40,9 +40,10 @@ pub struct EnergyLedger {
     pub modes_j: Vec<f64>,
     /// Lost to modal damping, from the modes' velocities.
     pub modal_damping_j: f64,
-    /// Work of the contact force over the compression: dissipated, if all contacts have ended.
+    /// Work of the contact force over the compression: dissipated, if all contacts have ended. Under a law without losses it then
+    /// measures the error of the collocated force.
     pub contact_j: f64,
-    /// Residual: the initial energy minus all others. It measures the error of the collocated force.
+    /// Residual: the initial energy minus all others. It consists of their rounding.
     pub residual_j: f64,
 }
 

@@ -114,7 +114,7 @@ pub struct Point {
 }
 
 /// The energy balance (J). The energy at the start plus `load_work_j` equals the energy at the end plus the losses plus the
-/// residual, which is a measure of accuracy.
+/// residual, which consists of their rounding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Energy {
     /// Kinetic and elastic energy of each body.
@@ -125,13 +125,16 @@ pub struct Energy {
     pub load_work_j: f64,
     /// Dissipated by modal damping.
     pub modal_damping_j: f64,
-    /// Dissipated in the contacts.
+    /// Dissipated in the contacts. Under laws without losses this is the error of the computed forces.
     pub contact_loss_j: f64,
     /// The residual of the balance.
     pub residual_j: f64,
     /// How far rounding can have falsified any of the parts: far below the energies, unless a harmonic load nearly meets an
     /// undamped frequency.
     pub rounding_j: f64,
+    /// Whether all contacts have laws without losses.
+    #[serde(skip)]
+    pub contacts_conserve: bool,
 }
 
 /// Energy of a body (J).
@@ -257,6 +260,7 @@ impl Summary {
                 contact_loss_j: ledger.contact_loss_j,
                 residual_j: ledger.unaccounted_j,
                 rounding_j: ledger.rounding_j,
+                contacts_conserve: (found.posed.assembly.contacts.iter()).all(|contact| contact.law.conserves_energy()),
             }),
             trust: compression(found).into_iter().collect(),
             counts: Cost {

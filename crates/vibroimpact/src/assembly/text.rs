@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::steady::SteadyMotion;
 use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
+use crate::summary::loss_and_residual;
 use crate::text::{counted, quantity, quantity_apart};
 use crate::trust::trust_text;
 
@@ -114,14 +115,15 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
             format!("{} at the start, {} at the end", quantity(body.start_j, "J"), quantity(body.end_j, "J")),
         ]
     };
+    let [lost_j, unaccounted_j] = loss_and_residual(energy.contact_loss_j, energy.residual_j, energy.contacts_conserve);
     let parts = [
         ("stored in contacts", energy.contacts_stored_j),
         ("work of the loads", energy.load_work_j),
         ("lost to modal damping", energy.modal_damping_j),
-        ("lost in contacts", energy.contact_loss_j),
+        ("lost in contacts", lost_j),
     ];
     let part = |(name, value): (&str, f64)| [name.to_owned(), quantity(value, "J")];
-    let residual = ["unaccounted".to_owned(), format!("{:.0e} J", energy.residual_j)];
+    let residual = ["unaccounted".to_owned(), format!("{unaccounted_j:.0e} J")];
     let largest =
         energy.bodies.values().flat_map(|body| [body.start_j, body.end_j]).fold(energy.load_work_j.abs(), f64::max);
     let rounding = (energy.rounding_j > VISIBLE_ROUNDING * largest).then(|| {

@@ -296,13 +296,14 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
 
 fn energy(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
     let energy = &summary.energy;
+    let [lost_j, unaccounted_j] = energy.loss_and_residual();
     let parts = [
         ("before the impact", energy.initial_j),
         ("striker", energy.striker_j),
         ("structure", energy.structure_j),
         ("lost to modal damping", energy.modal_damping_j),
-        ("lost in the contact", energy.contact_j),
-        ("unaccounted", energy.residual_j),
+        ("lost in the contact", lost_j),
+        ("unaccounted", unaccounted_j),
     ];
     let share = |part: f64| if energy.initial_j > 0.0 { 100.0 * part / energy.initial_j } else { 0.0 };
     let cells = |(name, part): (&str, f64)| vec![name.to_owned(), quantity(part, "J"), percent(share(part))];

@@ -125,16 +125,17 @@ pub fn result(summary: &Summary) -> String {
         // the sum removes the sign of a rounded zero
         format!("{:>12}  {:6.2} %", quantity(part, "J"), (1e4 * share).round() / 1e2 + 0.0)
     };
+    let [lost_j, unaccounted_j] = energy.loss_and_residual();
     let _ = writeln!(text, "\n  energy, of {} before", quantity(energy.initial_j, "J"));
     for (name, part) in [
         ("striker", energy.striker_j),
         ("structure", energy.structure_j),
         ("modal damping", energy.modal_damping_j),
-        ("contact", energy.contact_j),
+        ("contact", lost_j),
     ] {
         let _ = writeln!(text, "    {name:<20}{}", share(part));
     }
-    let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", format!("{:.0e} J", energy.residual_j));
+    let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", format!("{unaccounted_j:.0e} J"));
 
     if summary.sub_impact_count > 0 {
         let _ = writeln!(
