@@ -408,6 +408,34 @@ fn contacts_of_one_body_have_an_exact_balance_at_any_tolerance() {
     }
 }
 
+/// During a soft contact the sinusoid of a load turns far on a panel.
+#[test]
+fn fast_harmonic_loads_have_an_exact_balance_at_any_tolerance() {
+    let (modes, shapes) = cantilever(3, 0.01, &[0.7, 1.0]);
+    for (force_n, frequency_hz) in [(1.0, 500.0), (1.0, 2000.0), (1e-3, 5000.0)] {
+        let (omega_rad_s, phase_rad) = (2.0 * PI * frequency_hz, 0.3);
+        let force = Force::Harmonic { force_n, omega_rad_s, phase_rad };
+        let spring = |stiffness: f64| Law::from(LinearSpring::new(stiffness).unwrap());
+        let assembly = Assembly {
+            bodies: vec![Body::mass(0.1, 0.0, -0.5), Body::at_rest(modes.clone())],
+            contacts: vec![
+                Contact { sides: [mass(0, 0.1), point(1, &shapes[0])], gap_m: 0.0, law: spring(1e3) },
+                Contact { sides: [point(1, &shapes[1]), Point::Ground], gap_m: 1e-3, law: spring(2e3) },
+            ],
+            loads: vec![
+                Load { body: 0, shape: vec![0.1f64.sqrt().recip()], force: force.clone() },
+                Load { body: 1, shape: shapes[1].clone(), force },
+            ],
+        };
+        for tolerance in [1e-2, 1e-3, 1e-6] {
+            let (found, ledger) = solve(&assembly, 0.1, tolerance);
+            let work = compression_work(&found);
+            let floor = 1e-13 * work + ledger.rounding_j;
+            assert!(work > 1e-3 && ledger.unaccounted_j.abs() < floor, "{frequency_hz} {tolerance:e}: {ledger:?}");
+        }
+    }
+}
+
 /// Near an undamped frequency the ledger is a small difference of large numbers. The loss of digits is stated, also if the
 /// errors of two parts cancel; the motion has its full accuracy.
 #[test]

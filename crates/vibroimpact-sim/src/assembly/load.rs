@@ -10,7 +10,8 @@
 
 use super::problem::{Force, Load};
 use super::system::{Link, Span, System};
-use crate::panel::legendre::{BASIS, Q, TAYLOR};
+use super::wave::turned_mean;
+use crate::panel::legendre::{BASIS, Legendre, Q, TAYLOR, dot, work_of_unit_forces};
 use num_complex::Complex64;
 
 /// Phases of the harmonic loads on a panel, for all contacts: `e^{i Omega t}` at its start, and `e^{i Omega (t' - t)} - 1` at the
@@ -293,6 +294,19 @@ impl Loads {
         }
         let turns = turns.start.iter().copied().zip(turns.swept[place].iter().copied());
         self.moved_by(contact, time_s, part(place, h), turns)
+    }
+
+    /// Work of a contact's force over the sinusoids on a panel of `h`, which is exact, less its quadrature
+    /// ([`work_of_unit_forces`]), for which a sinusoid that turns far is no polynomial (J).
+    pub fn work_missed_j(&self, contact: usize, h: f64, turns: &Turns, force: &Legendre) -> f64 {
+        let of = |(j, harmonic): (usize, &Harmonic)| {
+            let now = harmonic.contacts[contact] * turns.start[j];
+            let moved = |place: usize| (now * turns.swept[place][j]).re;
+            let angle = harmonic.omega_rad_s * h;
+            let by_quadrature = work_of_unit_forces(&std::array::from_fn(moved), moved(Q));
+            -angle * (now * turned_mean(angle, force)).im - dot(&force.0, &by_quadrature)
+        };
+        self.harmonics.iter().enumerate().map(of).sum()
     }
 
     fn moved_by(
