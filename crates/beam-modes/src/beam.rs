@@ -1,10 +1,10 @@
 //! Modes and static compliance of a plain beam.
 
 use crate::compliance::green;
-use crate::definition::{Beam, End};
+use crate::definition::{Beam, End, is_held};
 use crate::flexure::Flexure;
 use crate::location::require_on;
-use crate::modes::{Modes, require_count};
+use crate::modes::{Modes, held_ends, require_count};
 use crate::node::Node;
 use crate::piece::Piece;
 use crate::rigid::{rigid_motions, rigid_shape};
@@ -49,7 +49,7 @@ impl Beam {
         let omega = roots.iter().map(|q| q * q * unit);
         let rigid: Vec<Vec<Piece>> = motions.iter().take(count).map(|motion| rigid_shape(&spans, motion)).collect();
         let elastic = shapes(&chain, &roots);
-        Modes::assemble(spans, units, rigid, omega, elastic)
+        Modes::assemble(spans, units, rigid, omega, elastic, held_ends(self.ends.map(is_held)))
     }
 
     /// Static compliance `G(x, x)`: displacement at `x_m` under a steady unit force there, m/N.

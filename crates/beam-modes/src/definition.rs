@@ -202,6 +202,11 @@ impl From<Beam> for BeamSystem {
     }
 }
 
+/// Whether the end cannot move sideways.
+pub(crate) fn is_held(end: End) -> bool {
+    matches!(end, End::Clamped | End::Pinned)
+}
+
 /// An end with a support.
 pub(crate) fn held(end: End) -> End {
     match end {

@@ -11,7 +11,7 @@ use invalid_input::InvalidInput;
 /// Shapes are mass-normalised, `int m phi_i phi_j dx = delta_ij` (thesis Eq. 4.4), so that their unit is kg^(-1/2). The sign of
 /// a shape is determined at the left end: the lowest derivative that is not zero there is positive (displacement at a free or
 /// guided end, slope at a pinned or, for rods, fixed end, curvature at a clamped end). The rotation of a free-free beam has
-/// positive slope.
+/// positive slope. At held ends and supports shapes are exactly zero.
 #[derive(Debug, Clone)]
 pub struct Modes {
     spans: Vec<Span>,
@@ -22,6 +22,8 @@ pub struct Modes {
     pieces: Vec<Piece>,
     /// Masses attached to the structure: span, location within it, mass; dimensionless.
     fixed: Vec<(usize, f64, f64)>,
+    /// Held ends and supports, where every shape is exactly zero; dimensionless.
+    held: Vec<f64>,
 }
 
 /// Limits the memory: `count` modes of `spans` pieces each.
@@ -38,6 +40,11 @@ pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInp
     Ok(())
 }
 
+/// The locations of the ends that do not move, dimensionless.
+pub(crate) fn held_ends([left, right]: [bool; 2]) -> Vec<f64> {
+    [(left, 0.0), (right, 1.0)].into_iter().filter(|(held, _)| *held).map(|(_, x)| x).collect()
+}
+
 impl Modes {
     /// From dimensionless, mass-normalised shapes: rigid-body motions first, then elastic modes with their frequencies.
     pub(crate) fn assemble(
@@ -46,6 +53,7 @@ impl Modes {
         rigid: Vec<Vec<Piece>>,
         omega_rad_s: impl Iterator<Item = f64>,
         elastic: Vec<Vec<Piece>>,
+        held: Vec<f64>,
     ) -> Result<Self, InvalidInput> {
         let omega_rad_s: Vec<f64> = std::iter::repeat_n(0.0, rigid.len()).chain(omega_rad_s).collect();
         let modes = Self {
@@ -55,6 +63,7 @@ impl Modes {
             units,
             omega_rad_s,
             fixed: Vec::new(),
+            held,
         };
         let resolved = modes.pieces.len() == modes.len() * modes.spans.len()
             && modes.pieces.iter().all(|p| p.size().is_finite())
@@ -98,7 +107,8 @@ impl Modes {
     /// [`InvalidInput`] for a mode that does not exist or a location outside the structure. The same applies to
     /// [`slope`](Self::slope) and [`curvature`](Self::curvature).
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
-        self.quantity(0, k, x_m, Piece::displacement)
+        let shape = self.quantity(0, k, x_m, Piece::displacement)?;
+        Ok(if self.holds(x_m) { 0.0 } else { shape })
     }
 
     /// Slope of mode `k` at `x_m`, kg^(-1/2)/m.
@@ -132,6 +142,9 @@ impl Modes {
     /// [`InvalidInput`] for a location outside the structure.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (span, x) = self.place(x_m)?;
+        if self.holds(x_m) {
+            return Ok(vec![0.0; self.len()]);
+        }
         let unit = self.unit(0);
         Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].displacement(x)).collect())
     }
@@ -176,6 +189,11 @@ impl Modes {
         }
         let (span, x) = self.place(x_m)?;
         Ok(self.unit(order) * value(&self.pieces[k * self.spans.len() + span], x))
+    }
+
+    /// Whether a held end or a support is here, to rounding.
+    fn holds(&self, x_m: f64) -> bool {
+        self.held.iter().any(|held| (x_m / self.units.length_m - held).abs() <= f64::EPSILON)
     }
 
     fn place(&self, x_m: f64) -> Result<(usize, f64), InvalidInput> {

@@ -2,7 +2,7 @@
 
 use crate::axial::{Axial, RodEnd};
 use crate::location::require_on;
-use crate::modes::{Modes, require_count};
+use crate::modes::{Modes, held_ends, require_count};
 use crate::piece::Piece;
 use crate::quadrature::gauss;
 use crate::roots::elastic_roots;
@@ -70,7 +70,8 @@ impl Rod {
         let unit = units.rigidity.sqrt() / units.mass_per_length_kg_m.sqrt() / units.length_m;
         let omega = roots.iter().map(|q| q * unit);
         let elastic = shapes(&chain, &roots);
-        Modes::assemble(spans, units, rigid, omega, elastic)
+        let held = held_ends(self.ends.map(|end| end == RodEnd::Fixed));
+        Modes::assemble(spans, units, rigid, omega, elastic, held)
     }
 
     /// Static compliance `G(x, x)`, m/N: displacement at `x_m` under a steady unit force there; for a free-free rod its

@@ -5,10 +5,10 @@ use crate::buckling::require_stable;
 use crate::chain::Chain;
 #[cfg(doc)]
 use crate::definition::Beam;
-use crate::definition::BeamSystem;
+use crate::definition::{BeamSystem, is_held};
 use crate::flexure::Flexure;
 use crate::location::require_on;
-use crate::modes::{Modes, require_count};
+use crate::modes::{Modes, held_ends, require_count};
 use crate::piece::Piece;
 use crate::rigid::{rigid_motions, rigid_shape};
 use crate::roots::elastic_roots;
@@ -69,13 +69,15 @@ impl BeamSystem {
         let place = |i: usize| if i > last { (last, spans[last].length) } else { (i, 0.0) };
         let heavy = nodes.iter().enumerate().filter(|(_, node)| node.mass[0] > 0.0);
         let fixed = heavy.map(|(i, node)| (place(i).0, place(i).1, node.mass[0])).collect();
+        let supported = spans.iter().zip(&nodes).filter(|(_, node)| node.support).map(|(span, _)| span.start);
+        let held = held_ends(ends.map(is_held)).into_iter().chain(supported).collect();
         let waveguide = Flexure::new(spans.clone(), ends, nodes);
         let roots = elastic_roots(&waveguide, motions.len(), elastic)?;
         let unit = units.bending_frequency();
         let omega = roots.iter().map(|q| q * q * unit);
         let rigid: Vec<Vec<Piece>> = motions.iter().take(count).map(|motion| rigid_shape(&spans, motion)).collect();
         let elastic = shapes(&waveguide, &roots);
-        Ok(Modes::assemble(spans, units, rigid, omega, elastic)?.with_fixed(fixed))
+        Ok(Modes::assemble(spans, units, rigid, omega, elastic, held)?.with_fixed(fixed))
     }
 
     /// Static compliance `G(x, x)`, m/N, with the deflection in shear; see [`Beam::static_compliance`].

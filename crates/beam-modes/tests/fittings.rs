@@ -309,3 +309,19 @@ fn bad_input_is_named() {
     }
     assert_eq!(field(&|s| s.foundation_n_m2 = 1e17), "foundation_n_m2");
 }
+
+/// Between the ends, where neither a support nor an end is a node of the solver's own spans.
+#[test]
+fn nothing_moves_at_a_support() {
+    for (x, axial_force_n) in [(0.3, 0.0), (1.0 / 3.0, 400.0), (0.77, 0.0), (1.0, 0.0)] {
+        let system = BeamSystem {
+            supports: vec![Support { location_m: x }],
+            axial_force_n,
+            ..bare(&[segment(0.6, 1.0, 1.0), segment(0.4, 2.0, 1.0)], [End::Clamped, End::Free])
+        };
+        let modes = system.modes(12).unwrap();
+        assert_eq!(modes.shapes_at(x).unwrap(), vec![0.0; 12], "{x}");
+        let beside = modes.shapes_at(x - 1e-9).unwrap();
+        assert!(beside.iter().any(|shape| shape.abs() > 1e-9), "{x}: {beside:?}");
+    }
+}

@@ -66,7 +66,7 @@ fn locations_at_limits() {
             for (end, x) in [(left, 0.0), (right, modes.length_m())] {
                 let shapes = modes.shapes_at(x).unwrap();
                 if held(end) {
-                    assert!(shapes.iter().all(|phi| phi.abs() < 1e-12), "{left:?} {right:?} at {x}: {shapes:?}");
+                    assert!(shapes.iter().all(|phi| *phi == 0.0), "{left:?} {right:?} at {x}: {shapes:?}");
                 } else {
                     assert!(shapes.iter().any(|phi| phi.abs() > 0.1), "{left:?} {right:?} at {x}");
                 }

@@ -338,3 +338,16 @@ fn signs_of_the_modes_of_a_square_do_not_depend_on_rounding() {
         assert!((slim[k] - wide[k]).abs() < 1e-3, "{k}: {} {}", slim[k], wide[k]);
     }
 }
+
+#[test]
+fn nothing_moves_at_a_held_edge() {
+    for edges in [[C, F, P, F], [P, P, C, F], [P, P, P, P], [F, C, F, F]] {
+        let modes = Plate { edges, ..STEEL }.modes(8).unwrap();
+        let Plate { length_m, width_m, .. } = STEEL;
+        let places = [(0.0, 0.1), (length_m, 0.1), (0.1, 0.0), (0.1, width_m)];
+        for (edge, (x_m, y_m)) in edges.into_iter().zip(places) {
+            let shapes = modes.shapes_at(x_m, y_m).unwrap();
+            assert_eq!(shapes.iter().all(|shape| *shape == 0.0), edge != F, "{edges:?} {x_m} {y_m}: {shapes:?}");
+        }
+    }
+}

@@ -202,6 +202,30 @@ fn a_stack_that_oscillates_into_a_stop_is_not_at_rest() {
 
 /// The finest tolerance, a dashpot and a load: near the maximum compression the rounding of the overlap, magnified by the
 /// slopes of short panels, must not be mistaken for truncation.
+/// Between the ground and a held end nothing moves, so that surfaces that meet there neither press nor part.
+#[test]
+fn surfaces_that_cannot_move_stay_as_they_are() {
+    let held = rod(0.6, [RodEnd::Free, RodEnd::Fixed], 15);
+    let (free, fixed) = (held.shapes_at(0.0).unwrap(), held.shapes_at(0.6).unwrap());
+    assert!(fixed.iter().all(|shape| *shape == 0.0));
+    let contacts = |gaps_m: &[f64]| {
+        let contact = |sides, gap_m| Contact { sides, gap_m, law: Hertz::new(1e9).unwrap().into() };
+        let still = gaps_m.iter().map(|gap_m| contact([Point::Ground, on(0, &fixed)], *gap_m));
+        still.chain([contact([on(1, &[1.0]), on(0, &free)], 1e-4)]).collect()
+    };
+    let solved = |gaps_m: &[f64]| {
+        let bodies = vec![undamped(&held, 0.0), Body::mass(1.0, 0.0, -0.5)];
+        solve(&Assembly { bodies, contacts: contacts(gaps_m), loads: vec![] }, 0.01)
+    };
+    let (alone, known) = solved(&[]);
+    for gap_m in [0.0, 1e-6] {
+        let (found, intervals) = solved(&[gap_m]);
+        assert_eq!(found.contacts[0].statistics.intervals, 0);
+        assert_eq!(intervals.len(), known.len());
+        assert_eq!(found.amplitude, alone.amplitude);
+    }
+}
+
 #[test]
 fn a_dashpot_under_loads_is_solved_to_the_finest_tolerance() {
     let law = Law::from(KelvinVoigt::new(1e8, 1363.0).unwrap());

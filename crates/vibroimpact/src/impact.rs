@@ -108,11 +108,16 @@ impl Impact {
     /// The reason why they are not the same modes.
     pub(crate) fn take_modes_of(&mut self, base: &Impact) -> Result<(), &'static str> {
         let steps = matched(&base.seen(), self.seen())?;
-        for (k, Match { from, sign, omega_rad_s }) in steps.into_iter().enumerate() {
+        self.structure.modes.truncate(steps.len());
+        self.remainder_modes = base.remainder_modes;
+        if let Some(start) = &mut self.start {
+            start.amplitude.truncate(steps.len());
+            start.rate.truncate(steps.len());
+        }
+        for (k, Match { from, sign }) in steps.into_iter().enumerate() {
             let modes = &mut self.structure.modes;
             modes.swap(k, from);
             modes[k].shape *= sign;
-            modes[k].omega_rad_s = omega_rad_s.unwrap_or(modes[k].omega_rad_s);
             if let Some(start) = &mut self.start {
                 for values in [&mut start.amplitude, &mut start.rate] {
                     values.swap(k, from);

@@ -17,8 +17,6 @@ pub(crate) struct Match {
     pub from: usize,
     /// Its sign.
     pub sign: f64,
-    /// The frequency that replaces its own (rad/s).
-    pub omega_rad_s: Option<f64>,
 }
 
 /// The compared data of a mode.
@@ -56,21 +54,17 @@ impl Seen {
         let largest = |mode: &Seen| mode.shapes.iter().fold(0.0f64, |most, shape| most.max(shape.abs()));
         largest(self) <= UNSEEN * largest(other)
     }
-
-    /// The frequency here, if it may replace that of the same mode at a neighbour. At a support no remainder mode is excited, and its
-    /// frequency is arbitrary. The effect of a mode grows with the square of its shape, so that its frequency has none on derivatives
-    /// there.
-    fn replaces(&self, other: &Seen) -> Option<f64> {
-        let differs = (self.omega_rad_s - other.omega_rad_s).abs() > SAME * self.omega_rad_s;
-        (differs && self.is_unseen_beside(other)).then_some(self.omega_rad_s)
-    }
 }
 
-/// For each mode in turn the matching mode of the neighbour.
+/// For each mode in turn the matching mode of the neighbour. Beyond these the neighbour may have remainder modes, if no mode moves the
+/// points here: the effect of a mode grows with the square of its shape, so that they have none on derivatives here.
 ///
 /// # Errors
 /// The reason why they are not the same modes.
 pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<Match>, &'static str> {
+    if own.iter().flat_map(|mode| &mode.shapes).all(|shape| *shape == 0.0) {
+        found.truncate(own.len());
+    }
     if own.len() != found.len() {
         return Err("the number of modes that the contact moves changes");
     }
@@ -94,7 +88,7 @@ pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<Match>, 
         }
         found.swap(k, i);
         let sign = mode.compared(&found[k], largest).1;
-        steps.push(Match { from: i, sign, omega_rad_s: mode.replaces(&found[k]) });
+        steps.push(Match { from: i, sign });
     }
     Ok(steps)
 }

@@ -16,6 +16,7 @@ pub(super) struct Function {
 
 /// The functions in one direction.
 pub(super) struct Line {
+    edges: [Edge; 2],
     pub functions: Vec<Function>,
     /// Indices of the functions of either parity; all are in the first list if the two edges differ.
     pub classes: [Vec<usize>; 2],
@@ -41,11 +42,14 @@ impl Line {
             let odd = if k < low { parity(&functions[k].value) } else { (k - low) % 2 };
             classes[if edges[0] == edges[1] { odd } else { 0 }].push(k);
         }
-        Line { functions, classes }
+        Line { edges, functions, classes }
     }
 
-    /// Values of all functions at `s`.
+    /// Values of all functions at `s`, which are exactly zero at a held edge.
     pub fn values(&self, s: f64) -> Vec<f64> {
+        if self.edges.iter().zip([-1.0, 1.0]).any(|(edge, end)| *edge != Edge::Free && s == end) {
+            return vec![0.0; self.functions.len()];
+        }
         let degree = self.functions.first().map_or(0, |function| function.value.len());
         let mut legendre = vec![1.0, s];
         for n in 1..degree.max(1) {

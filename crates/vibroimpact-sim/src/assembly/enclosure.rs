@@ -206,7 +206,7 @@ impl FlightBounds {
             }
             // a parabola that is still above zero at the best time yet has its root beyond it
             let at_best = separation - best * (rate + 0.5 * curvature * best);
-            if at_best > 0.0 && separation >= 0.0 || (separation == 0.0 && rate < 0.0 && best == 0.0) {
+            if at_best > 0.0 && separation >= 0.0 || (separation == 0.0 && rate <= 0.0 && best == 0.0) {
                 best = first_root_of_parabola(separation, -rate, curvature);
                 if best == f64::INFINITY {
                     break;

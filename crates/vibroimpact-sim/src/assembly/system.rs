@@ -32,7 +32,8 @@ pub(crate) struct Link {
     pub in_a_row: Option<Span>,
     /// Rigid modes that move it: number and `psi`.
     pub rigid: Vec<(usize, f64)>,
-    /// `sum psi_k^2` over all modes (1/kg): the change of its rate by a unit impulse.
+    /// `sum psi_k^2` over all modes (1/kg): the change of its rate by a unit impulse. Zero if nothing moves it, as between the
+    /// ground and the held end of a beam.
     pub mobility: f64,
 }
 

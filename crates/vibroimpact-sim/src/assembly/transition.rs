@@ -15,7 +15,7 @@ use contact_models::{After, Branch, Memory, boundaries};
 pub(super) const SINGULAR: f64 = 1e-4;
 
 impl<'a> March<'a> {
-    /// Contacts that touch at the start close at once.
+    /// Contacts that touch at the start close at once, unless nothing can move them.
     pub(super) fn begin(&mut self) {
         self.depart();
         for c in 0..self.states.len() {
@@ -31,7 +31,10 @@ impl<'a> March<'a> {
             let noise = self.noise(c);
             if self.states[c].overlap > noise {
                 self.touch(c, self.states[c].overlap);
-            } else if self.states[c].overlap >= -noise && !self.parts_from_here(c) {
+            } else if self.states[c].overlap >= -noise
+                && self.system.links[c].mobility > 0.0
+                && !self.parts_from_here(c)
+            {
                 self.touch(c, 0.0);
             }
         }

@@ -19,7 +19,8 @@ impl<'a> March<'a> {
     pub(super) fn watch(&mut self, h: f64, contacts: &mut Vec<usize>, closed: usize, force: &[Legendre]) {
         let lasting = self.lasting();
         for c in 0..self.states.len() {
-            if self.states[c].is_closed() || contacts.contains(&c) {
+            let moves = self.system.links[c].mobility > 0.0;
+            if self.states[c].is_closed() || contacts.contains(&c) || !moves {
                 continue;
             }
             let disturbed = self.is_disturbed(c);

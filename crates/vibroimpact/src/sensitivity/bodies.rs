@@ -215,16 +215,18 @@ fn seen(assembly: &Assembly<Law>) -> Vec<Vec<Seen>> {
 /// Gives the modes the signs and the order of those of a neighbouring assembly.
 fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> Result<(), &'static str> {
     for (body, (own, found)) in seen(base).into_iter().zip(seen(near)).enumerate() {
-        for (k, Match { from, sign, omega_rad_s }) in matched(&own, found)?.into_iter().enumerate() {
-            let Assembly { bodies, contacts, loads } = &mut *near;
-            let Body { modes, amplitude, rate } = &mut bodies[body];
-            modes.swap(k, from);
-            modes[k].omega_rad_s = omega_rad_s.unwrap_or(modes[k].omega_rad_s);
-            for values in [amplitude, rate].into_iter().chain(shapes(contacts, loads, body)) {
-                values.swap(k, from);
+        let steps = matched(&own, found)?;
+        let Assembly { bodies, contacts, loads } = &mut *near;
+        let Body { modes, amplitude, rate } = &mut bodies[body];
+        modes.truncate(steps.len());
+        for values in [amplitude, rate].into_iter().chain(shapes(contacts, loads, body)) {
+            values.truncate(steps.len());
+            for (k, Match { from, sign }) in steps.iter().enumerate() {
+                values.swap(k, *from);
                 values[k] *= sign;
             }
         }
+        steps.iter().enumerate().for_each(|(k, step)| modes.swap(k, step.from));
     }
     Ok(())
 }
