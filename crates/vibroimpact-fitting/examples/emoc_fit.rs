@@ -1,7 +1,7 @@
 //! Fits the three parameters of the EMOC law to 300 synthetic impacts on a pinned beam, with intervals, cross-validation, and
 //! the effect of the kinks of the law.
 //!
-//! `cargo run --release -p fitting --example emoc_fit`
+//! `cargo run --release -p vibroimpact-fitting --example emoc_fit`
 
 mod emoc_data;
 

@@ -1,6 +1,6 @@
 //! A decaying exponential fitted to noisy readings: parameters with their 95 % intervals.
 //!
-//! `cargo run --release -p fitting --example decay`
+//! `cargo run --release -p vibroimpact-fitting --example decay`
 
 use fitting::{FitError, Method, Parameter, Problem, Settings, fit};
 
