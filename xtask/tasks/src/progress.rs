@@ -77,7 +77,9 @@ impl Progress {
     fn line(&self, done: u64) -> String {
         let colon = if self.part.is_empty() { "" } else { ": " };
         let elapsed_s = self.begun.elapsed().as_secs();
-        format!("{}{colon}{done} of {} {}, {elapsed_s} s so far", self.part, self.total, self.unit)
+        // a part such as a fit counts nothing
+        let count = if self.total > 0 { format!("{done} of {} {}, ", self.total, self.unit) } else { String::new() };
+        format!("{}{colon}{count}{elapsed_s} s so far", self.part)
     }
 
     /// Removes the bar.
@@ -101,6 +103,8 @@ mod tests {
         }
         assert_eq!(progress.line(40), "Figure 3.5: 40 of 40 impacts, 0 s so far");
         assert_eq!(progress.done.load(Ordering::Relaxed), progress.total);
+        progress.begin("Fits", 0, 0);
+        assert_eq!(progress.line(0), "Fits: 0 s so far");
         // the work of an earlier run counts
         progress.begin("", 100, 60);
         progress.add(5);
