@@ -3,7 +3,7 @@
 
 use crate::common::Intervals;
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
-use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Viscous};
+use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
@@ -223,6 +223,44 @@ fn surfaces_that_cannot_move_stay_as_they_are() {
         assert_eq!(found.contacts[0].statistics.intervals, 0);
         assert_eq!(intervals.len(), known.len());
         assert_eq!(found.amplitude, alone.amplitude);
+    }
+}
+
+/// A run that begins within a contact continues the one from which its start is taken, also where a dashpot would pull: there the
+/// force is zero. Laws with memory continue it while they are loaded.
+#[test]
+fn a_run_that_begins_within_a_contact_continues_it() {
+    let (mass_kg, shape) = (0.1, [0.1f64.sqrt().recip()]);
+    let plastic = Thornton::new(1e11, 0.01, 5e8).unwrap();
+    let cases: [(Law, bool); 4] = [
+        (KelvinVoigt::new(1e4, 30.0).unwrap().into(), true),
+        (HuntCrossley::new(1e7, 1.5, 1.0).unwrap().into(), true),
+        (Hertz::new(1e7).unwrap().into(), true),
+        (plastic.into(), false),
+    ];
+    for (law, forgets) in cases {
+        let from = |position_m: f64, speed_m_s: f64, end_s: f64| {
+            let contacts = vec![Contact { sides: [on(0, &shape), Point::Ground], gap_m: 0.0, law }];
+            let bodies = vec![Body::mass(mass_kg, position_m, speed_m_s)];
+            let (run, intervals) = solve(&Assembly { bodies, contacts, loads: vec![] }, end_s);
+            assert!(intervals.iter().all(|(_, interval)| interval.impulse_n_s >= 0.0), "{law:?} {intervals:?}");
+            ([run.amplitude[0][0] * shape[0], run.rate[0][0] * shape[0]], intervals[0].1)
+        };
+        let (_, whole) = from(0.0, -1.0, 0.1);
+        let (end_s, mut receding) = (2.0 * whole.end_s.unwrap(), 0);
+        let ([known_m, known_m_s], _) = from(0.0, -1.0, end_s);
+        for i in 1..20 {
+            let begin_s = 0.05 * f64::from(i) * whole.end_s.unwrap();
+            let ([position_m, speed_m_s], _) = from(0.0, -1.0, begin_s);
+            receding += u32::from(speed_m_s > 0.0);
+            if speed_m_s > 0.0 && !forgets {
+                continue;
+            }
+            let ([found_m, found_m_s], _) = from(position_m, speed_m_s, end_s - begin_s);
+            let error = (found_m - known_m).abs() / known_m.abs() + (found_m_s - known_m_s).abs();
+            assert!(error < 1e-6, "{law:?} from {begin_s}: {error:e}");
+        }
+        assert!(receding > 2, "{law:?}");
     }
 }
 

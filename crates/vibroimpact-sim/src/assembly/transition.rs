@@ -14,6 +14,9 @@ use contact_models::{After, Branch, Memory, boundaries};
 /// Relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch.
 pub(super) const SINGULAR: f64 = 1e-4;
 
+/// Largest number of boundaries that a contact passes as it begins.
+const MOST_PASSED: usize = 16;
+
 impl<'a> March<'a> {
     /// Contacts that touch at the start close at once, unless nothing can move them.
     pub(super) fn begin(&mut self) {
@@ -31,11 +34,26 @@ impl<'a> March<'a> {
             let noise = self.noise(c);
             if self.states[c].overlap > noise {
                 self.touch(c, self.states[c].overlap);
+                self.pass_boundaries(c);
             } else if self.states[c].overlap >= -noise
                 && self.system.links[c].mobility > 0.0
                 && !self.parts_from_here(c)
             {
                 self.touch(c, 0.0);
+            }
+        }
+    }
+
+    /// Surfaces that overlap at the start may be beyond boundaries of the branch with which a contact begins, as a dashpot that would
+    /// pull.
+    fn pass_boundaries(&mut self, c: usize) {
+        for _ in 0..MOST_PASSED {
+            let State { overlap, rate, ends, .. } = &self.states[c];
+            let Some(boundary) = ends.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
+            self.transition(Target { contact: c, boundary });
+            // unlike a boundary that was located, these may be far behind
+            if let Phase::Closed(touch) = &mut self.states[c].phase {
+                (touch.residue, touch.rate_residue) = (0.0, 0.0);
             }
         }
     }
