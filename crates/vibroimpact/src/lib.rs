@@ -38,6 +38,9 @@
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
+//! | [`assembly`] | scenes of many bodies, contacts and loads over long times |
+//! | [`orbit`] | periodic motions of such scenes and their branches |
+//! | [`law`] | parameters of contact laws for a given restitution |
 //! | [`sensitivity`] | derivatives of an impact with respect to the numbers of its scene |
 //! | [`sweep`] | many scenes that differ in some fields: grids, lists, ranges, random draws |
 //! | [`plot`], [`report`] | charts, and reports that compare published numbers with ours |
