@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use saphyr::{LoadableYamlNode, Yaml};
+use toml::{Table, Value};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -49,6 +50,40 @@ fn commands(text: &str) -> String {
     let tree = parsed(text);
     let runs = jobs(&tree).into_iter().flat_map(|(_, job)| steps(job)).filter_map(|step| at(step, &["run"])?.as_str());
     runs.map(|run| run.to_owned() + "\n").collect()
+}
+
+/// The packages of the workspace whose manifests say `publish = false`.
+fn unpublished() -> Vec<String> {
+    let read = |path: PathBuf| fs::read_to_string(path.join("Cargo.toml")).unwrap().parse::<Table>().unwrap();
+    let workspace = read(root());
+    let members = workspace["workspace"]["members"].as_array().unwrap().iter().filter_map(Value::as_str);
+    let folders = members.flat_map(|member| match member.strip_suffix("/*") {
+        Some(parent) => fs::read_dir(root().join(parent)).unwrap().map(|entry| entry.unwrap().path()).collect(),
+        None => vec![root().join(member)],
+    });
+    let packages = folders.filter(|folder| folder.join("Cargo.toml").is_file()).map(read);
+    let private = packages.filter(|manifest| manifest["package"].get("publish") == Some(&Value::Boolean(false)));
+    private.map(|manifest| manifest["package"]["name"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn packages_that_are_not_published_are_not_packed() {
+    let mut unpublished = unpublished();
+    unpublished.sort();
+    assert!(unpublished.len() >= 8, "{unpublished:?}");
+    let excluded = |arguments: &[&str]| {
+        let mut names: Vec<String> =
+            arguments.windows(2).filter(|pair| pair[0] == "--exclude").map(|pair| pair[1].to_owned()).collect();
+        names.sort();
+        names
+    };
+    let packages = crate::STEPS.iter().find(|step| step.name == "packages").unwrap();
+    assert_eq!(excluded(packages.arguments), unpublished);
+    let commands = commands(&workflow("ci"));
+    for command in ["cargo package ", "cargo semver-checks "] {
+        let line = commands.lines().find(|line| line.contains(command)).unwrap();
+        assert_eq!(excluded(&line.split_whitespace().collect::<Vec<_>>()), unpublished, "{command}");
+    }
 }
 
 #[test]
