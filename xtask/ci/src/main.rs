@@ -10,6 +10,8 @@ mod circles;
 #[cfg(test)]
 mod lock_files;
 #[cfg(test)]
+mod packed_files;
+#[cfg(test)]
 mod test_files;
 #[cfg(test)]
 mod workflows;
