@@ -13,7 +13,7 @@ use super::load::Loads;
 use super::system::{Link, Span, System};
 use super::terminal::value;
 use crate::panel::legendre::TAYLOR;
-use crate::panel::vector::{sum_over, vectorized};
+use crate::panel::vector::{change_each, sum_over, vectorized};
 use std::ops::Range;
 
 /// A contact force, its rate, and the modes on which it acts.
@@ -39,11 +39,20 @@ impl Held {
         }
         for pull in pulls {
             let Some(partner) = pull.link.span(body) else { continue };
-            for (k, (psi, inverse)) in partner.psi[from..].iter().zip(inverse).enumerate() {
-                let yields = psi * inverse * inverse;
-                self.at[k] -= yields * pull.force_n;
-                self.rate[k] -= yields * pull.rate_n_s;
-            }
+            vectorized(
+                #[inline(always)]
+                || {
+                    change_each(
+                        [&mut self.at, &mut self.rate],
+                        [&partner.psi[from..], inverse],
+                        #[inline(always)]
+                        |[at, rate], [psi, inverse]| {
+                            let yields = psi * inverse * inverse;
+                            [at - yields * pull.force_n, rate - yields * pull.rate_n_s]
+                        },
+                    );
+                },
+            );
         }
     }
 }
@@ -125,33 +134,60 @@ pub(crate) struct FlightBounds {
     uses: u32,
 }
 
+/// The next number of modes after this one that a parabola follows: every one up to 4, then in ratios of about 4/3, with the
+/// powers of two.
+fn next_cut(cut: usize) -> usize {
+    if cut < 4 {
+        return cut + 1;
+    }
+    let step = 2 * cut.ilog2() as usize;
+    (cut / step + 1).saturating_mul(step).min((cut + 1).next_power_of_two())
+}
+
 /// Number of uses after which new bounds are computed.
 const USES: u32 = 16;
 
 impl FlightBounds {
     pub fn new(system: &System, contact: usize, (amplitude, rate): (&[f64], &[f64])) -> FlightBounds {
-        let elastic = &system.links[contact].elastic;
-        let n = elastic.len();
-        let bound = |(k, psi): &(usize, f64)| {
-            let speed = rate[*k] * system.inverse[*k];
-            psi.abs() * (amplitude[*k] * amplitude[*k] + speed * speed).sqrt()
+        let link = &system.links[contact];
+        let n = link.elastic.len();
+        let bound = |psi: f64, a: f64, b: f64, inverse: f64| {
+            let speed = b * inverse;
+            psi.abs() * (a * a + speed * speed).sqrt()
         };
-        let bounds: Vec<f64> = elastic.iter().map(bound).collect();
-        let total: f64 = bounds.iter().sum();
-        // room for the cuts of a hundred modes
-        let (mut cuts, mut below, mut curvature) = (Vec::with_capacity(24), 0.0, 0.0);
-        for i in 0..=n {
-            // every count up to 4, then in ratios of about 4/3
-            if i <= 4 || i == n || i.leading_zeros() != (i - 1).leading_zeros() || i % (i.ilog2() as usize * 2) == 0 {
-                let above = if i == n { 0.0 } else { (total - below).max(0.0) * (1.0 + 1e-12) };
-                cuts.push((i, above, curvature));
+        let mut bounds = vec![0.0; n];
+        match &link.in_a_row {
+            Some(Span { modes, psi }) => {
+                let [a, b, inverse] = [amplitude, rate, &system.inverse].map(|row| &row[modes.clone()]);
+                vectorized(
+                    #[inline(always)]
+                    || {
+                        let rows = psi.iter().zip(a).zip(b).zip(inverse);
+                        for (of, (((psi, a), b), inverse)) in bounds.iter_mut().zip(rows) {
+                            *of = bound(*psi, *a, *b, *inverse);
+                        }
+                    },
+                );
             }
-            if i < n {
-                let k = elastic[i].0;
-                below += bounds[i];
-                curvature += (1.0 + 2.0 * system.modes[k].damping_ratio) * system.square[k] * bounds[i];
+            None => {
+                for (of, &(k, psi)) in bounds.iter_mut().zip(&link.elastic) {
+                    *of = bound(psi, amplitude[k], rate[k], system.inverse[k]);
+                }
             }
         }
+        let total: f64 = bounds.iter().sum();
+        // room for the cuts of a hundred modes
+        let (mut cuts, mut below, mut curvature, mut cut) = (Vec::with_capacity(24), 0.0, 0.0, 0);
+        while cut < n {
+            cuts.push((cut, (total - below).max(0.0) * (1.0 + 1e-12), curvature));
+            let next = next_cut(cut).min(n);
+            for ((k, _), bound) in link.elastic[cut..next].iter().zip(&bounds[cut..next]) {
+                below += bound;
+                curvature += (1.0 + 2.0 * system.modes[*k].damping_ratio) * system.square[*k] * bound;
+            }
+            cut = next;
+        }
+        cuts.push((n, 0.0, curvature));
         FlightBounds { cuts, uses: 0 }
     }
 

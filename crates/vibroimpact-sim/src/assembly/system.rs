@@ -99,7 +99,9 @@ pub(crate) struct System {
 
 impl System {
     pub fn new(posed: &Posed) -> System {
-        let (mut modes, mut bodies, mut place) = (Vec::new(), Vec::new(), Vec::new());
+        let count = posed.bodies.iter().map(|body| body.modes.len()).sum();
+        let mut modes = Vec::with_capacity(count);
+        let (mut bodies, mut place) = (Vec::new(), Vec::new());
         for body in posed.bodies {
             let first = modes.len();
             let mut order: Vec<usize> = (0..body.modes.len()).collect();

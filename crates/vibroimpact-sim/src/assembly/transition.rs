@@ -248,11 +248,15 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, rate).force_n * h <= allowed
         };
         // the force at the end of a panel grows with the panel
-        let (mut coarse, mut fine) = (J_MIN, J_MAX);
+        let mut coarse = if self.reach.is_finite() { level_within(4.0 * self.reach) } else { J_MIN };
+        let (mut fine, mut ahead) = (coarse, 1);
+        while fine < J_MAX && !small(fine) {
+            (coarse, fine, ahead) = (fine + 1, (fine + ahead).min(J_MAX), 2 * ahead);
+        }
         while coarse < fine {
             let middle = coarse + (fine - coarse) / 2;
             if small(middle) { fine = middle } else { coarse = middle + 1 }
         }
-        if self.reach.is_finite() { fine.max(level_within(4.0 * self.reach)) } else { fine }
+        fine
     }
 }

@@ -2,7 +2,7 @@
 
 use super::oscillator::{BodyMode, Propagator, propagate};
 use super::rows::Rows;
-use super::vector::vectorized;
+use super::vector::{change_each, vectorized};
 use std::array;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -90,17 +90,16 @@ impl Rotation {
 
     /// Moves all modes freely.
     pub fn apply(&self, amplitude: &mut [f64], rate: &mut [f64]) {
-        let n = amplitude.len();
-        let rate = &mut rate[..n];
-        let [less, p12, p21, p22] = self.of_modes(0..n);
+        let rows = self.of_modes(0..amplitude.len());
         vectorized(
             #[inline(always)]
             || {
-                for k in 0..n {
-                    let (a, b) = (amplitude[k], rate[k]);
-                    amplitude[k] = a + (less[k] * a + p12[k] * b);
-                    rate[k] = p21[k] * a + p22[k] * b;
-                }
+                change_each(
+                    [amplitude, rate],
+                    rows,
+                    #[inline(always)]
+                    |[a, b], [less, p12, p21, p22]| [a + (less * a + p12 * b), p21 * a + p22 * b],
+                );
             },
         );
     }

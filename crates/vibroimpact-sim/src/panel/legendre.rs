@@ -1,6 +1,7 @@
 //! The step's polynomial basis: Legendre polynomials on [0, 1] and their Gauss nodes.
 
 pub(crate) use super::polynomial::{Legendre, Nodal, Q, dot, legendre};
+use super::vector::vectorized;
 use gauss_quad::legendre::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
@@ -110,7 +111,11 @@ pub(crate) fn work_of_unit_forces(moved: &Nodal, moved_at_end: f64) -> Nodal {
 impl Legendre {
     /// The polynomial with these values at the nodes.
     pub fn through(nodal: &Nodal) -> Legendre {
-        Legendre(apply(&BASIS.to_coefficients, nodal))
+        let to_coefficients = &BASIS.to_coefficients;
+        Legendre(vectorized(
+            #[inline(always)]
+            || apply(to_coefficients, nodal),
+        ))
     }
 
     /// Its values at the nodes.

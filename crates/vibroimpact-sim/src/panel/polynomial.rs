@@ -1,6 +1,8 @@
 //! A polynomial on a panel. Its values at the nodes are a [`Nodal`], its coefficients a [`Legendre`]: two types, so that one cannot
 //! be taken for the other.
 
+use super::vector::vectorized;
+
 /// Number of nodes on a step. The force on a step is a polynomial of degree `Q - 1`.
 pub(crate) const Q: usize = 8;
 /// Values at the nodes, or a row of as many numbers; the coefficients of a polynomial are a [`Legendre`].
@@ -53,21 +55,29 @@ impl Legendre {
     /// Its values at as many places as there are nodes.
     pub fn at_each(&self, places: &[f64; Q]) -> [f64; Q] {
         let Legendre(coefficients) = self;
-        let x = places.map(|s| 2.0 * s - 1.0);
-        let (mut before, mut last) = ([1.0; Q], x);
-        let mut sum = [0.0; Q];
-        for i in 0..Q {
-            sum[i] = coefficients[0] + coefficients[1] * x[i];
-        }
-        for n in 1..Q - 1 {
-            let (with, without) = FACTORS[n];
-            for i in 0..Q {
-                let next = with * x[i] * last[i] - without * before[i];
-                sum[i] += coefficients[n + 1] * next;
-                (before[i], last[i]) = (last[i], next);
-            }
-        }
-        sum
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut x = [0.0; Q];
+                for i in 0..Q {
+                    x[i] = 2.0 * places[i] - 1.0;
+                }
+                let (mut before, mut last) = ([1.0; Q], x);
+                let mut sum = [0.0; Q];
+                for i in 0..Q {
+                    sum[i] = coefficients[0] + coefficients[1] * x[i];
+                }
+                for n in 1..Q - 1 {
+                    let (with, without) = FACTORS[n];
+                    for i in 0..Q {
+                        let next = with * x[i] * last[i] - without * before[i];
+                        sum[i] += coefficients[n + 1] * next;
+                        (before[i], last[i]) = (last[i], next);
+                    }
+                }
+                sum
+            },
+        )
     }
 
     /// Its mean over [0, 1].

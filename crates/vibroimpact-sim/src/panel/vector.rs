@@ -49,3 +49,27 @@ pub(crate) fn sum_over<const ROWS: usize, const OUT: usize>(
     }
     total
 }
+
+/// Replaces two values of each mode by others, which depend on them and on those of further rows of equal length.
+#[inline(always)]
+pub(crate) fn change_each<const ROWS: usize>(
+    [one, two]: [&mut [f64]; 2],
+    rows: [&[f64]; ROWS],
+    change: impl Fn([f64; 2], [f64; ROWS]) -> [f64; 2],
+) {
+    let n = rows.iter().map(|row| row.len()).fold(one.len().min(two.len()), usize::min);
+    let (ones, rest_of_one) = one[..n].as_chunks_mut::<LANES>();
+    let (twos, rest_of_two) = two[..n].as_chunks_mut::<LANES>();
+    let chunks = rows.map(|row| row[..n].as_chunks::<LANES>());
+    for i in 0..n / LANES {
+        let block = chunks.map(|(whole, _)| whole[i]);
+        let (mut a, mut b) = (ones[i], twos[i]);
+        for lane in 0..LANES {
+            [a[lane], b[lane]] = change([a[lane], b[lane]], block.map(|row| row[lane]));
+        }
+        (ones[i], twos[i]) = (a, b);
+    }
+    for i in 0..n % LANES {
+        [rest_of_one[i], rest_of_two[i]] = change([rest_of_one[i], rest_of_two[i]], chunks.map(|(_, rest)| rest[i]));
+    }
+}
