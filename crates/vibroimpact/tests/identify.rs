@@ -312,6 +312,63 @@ fn the_next_experiment_is_the_most_informative_one() {
     }
 }
 
+/// Impacts with three to six contacts, whose sum of squares has many minima: several starts find the true parameters where one
+/// does not, and the text says what a misfit may mean. The ratings of further experiments are recomputed from the derivatives that
+/// `sensitivity` gives.
+#[test]
+fn many_minima_are_searched_and_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = scene(1.2e9, 0.5);
+    let at = |point: &str, speed: f64| {
+        let mut tree = truth.clone();
+        tree["location"] = json!(point);
+        tree["striker"]["speed_m_s"] = json!(speed);
+        tree
+    };
+    let mut text = "location,striker.speed_m_s,restitution,restitution_sd\n".to_owned();
+    let places: Vec<(&str, f64)> = POINTS.into_iter().flat_map(|p| [0.5, 1.0, 2.0, 4.0].map(|v| (p, v))).collect();
+    for (point, speed) in &places {
+        let found = Scene::from_value(&at(point, *speed)).unwrap().impact().unwrap().solve().unwrap();
+        assert!(found.sub_impacts.len() > 2);
+        text += &format!("{point},{speed:?},{:?},0.001\n", found.restitution.unwrap());
+    }
+    fs::write(folder.path().join("scene.json"), scene(2e9, 0.4).to_string()).unwrap();
+    fs::write(folder.path().join("data.csv"), text).unwrap();
+    fs::write(folder.path().join("next.csv"), "location,striker.speed_m_s\ntip,8\nmiddle,0.2\nquarter,8\n").unwrap();
+    let command = |starts: &str, more: &[&str]| {
+        let arguments = ["identify", "data.csv", "--scene", "scene.json", "--free", FREE, "--starts", starts];
+        stdout(&run(folder.path(), &[&arguments[..], more].concat())).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for said in ["THE MODEL DOES NOT FIT, or the search has missed the least sum", "from one starting point: the sum"] {
+        assert!(command("1", &[]).contains(said));
+    }
+    assert!(command("4", &[]).contains("1 of 4 starting points leads to the least robust sum: there are other minima"));
+    let options = ["--free", FREE, "--starts", "4", "--candidates", "next.csv"];
+    let found = in_folder(folder.path(), &options);
+    assert!((value(&found, 0) / 1.2e9 - 1.0).abs() < 1e-6 && (value(&found, 1) / 0.5 - 1.0).abs() < 1e-6);
+
+    // with the logarithms of both parameters
+    let fields = FREE.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let row = |point: &str, speed: f64| {
+        let found = Scene::from_value(&at(point, speed)).unwrap().sensitivity(&fields).unwrap();
+        let of = |field: &str, value: f64| found.of("restitution", field).unwrap().value * value / 0.001;
+        [of(&fields[0], 1.2e9), of(&fields[1], 0.5)]
+    };
+    let prior = 9f64.ln().powi(-2);
+    let mut known = [prior, 0.0, prior];
+    let add = |m: [f64; 3], [a, b]: [f64; 2]| [m[0] + a * a, m[1] + a * b, m[2] + b * b];
+    let volume = |m: [f64; 3]| (m[0] * m[2] - m[1] * m[1]).sqrt().recip();
+    for (point, speed) in places {
+        known = add(known, row(point, speed));
+    }
+    for one in found["candidates"].as_array().unwrap() {
+        let (point, speed) = (&one["fields"]["location"], &one["fields"]["striker.speed_m_s"]);
+        let with = add(known, row(point.as_str().unwrap(), speed.as_f64().unwrap()));
+        let ratio = volume(with) / volume(known);
+        assert!((one["volume_ratio"].as_f64().unwrap() / ratio - 1.0).abs() < 1e-4, "{one} {ratio}");
+    }
+}
+
 #[test]
 fn long_names_and_single_numbers_keep_the_text_in_order() {
     let folder = tempfile::tempdir().unwrap();
@@ -397,8 +454,17 @@ fn bad_input_is_refused_by_name() {
         (
             "location,restitutoin,restitution\ntip,1,1\ntip,1,1\n",
             stiffness,
-            "line 2, restitutoin = 1.0 is not a known field",
+            "line 2, restitutoin = 1.0 is not a known field; it must be one of ",
         ),
+        ("location,restituton,first_contact_s\ntip,1,1\ntip,1,1\n", stiffness, "force_file; did you mean restitution?"),
+        (
+            "location,restituton,restitution_sd\ntip,1,1\n",
+            stiffness,
+            "column restitution_sd = 1 column is not allowed; it must be beside the column restitution, whose standard \
+             deviation it is; is the column restituton misspelt?",
+        ),
+        ("location,restitution,restituton_sd\ntip,1,1\n", stiffness, "force_n; did you mean restitution?"),
+        (good, "contact.stifness_n_m1_5", "as a number; did you mean stiffness_n_m1_5?"),
         (
             "location,striker.mass_kg,restitution\ntip,-1,0.3\ntip,-1,0.3\n",
             stiffness,

@@ -279,6 +279,12 @@ fn fields_without_a_derivative_are_named() {
     };
     for (scene, more, told) in [
         ("pinned-beam.json", &["--by", "striker.mass"], "striker.radius_m"),
+        ("pinned-beam.json", &["--by", "locaton_m"], "; did you mean location_m?"),
+        (
+            "pinned-beam.json",
+            &["--by", "location_m,location_m"],
+            "--by = location_m is not allowed; it must be stated only once",
+        ),
         ("pinned-beam.json", &["--by", "structure.kind"], "the path of a number"),
         ("pinned-beam.json", &["--by", "modes"], "can vary continuously"),
         ("pinned-beam.json", &["--by", ".."], "the path of a field"),

@@ -10,11 +10,12 @@ use crate::input::{Row as Cells, Table, read_bytes};
 use crate::scene::FieldPath;
 use crate::scene::json::number;
 use crate::scene::require_positive;
+use crate::scene::told::{did_you_mean, did_you_mean_one_of};
 use crate::scene::{InvalidInput, SceneError, table_path};
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 10_000;
-const FORCE_FILE: &str = "force_file";
+pub(super) const FORCE_FILE: &str = "force_file";
 /// The name of the measured force, in whose column of standard deviations its noise is stated.
 pub(super) const FORCE: &str = "force_n";
 const SD: &str = "_sd";
@@ -102,6 +103,11 @@ impl Data {
         Ok(Data { fields: columns.fields(), rows, stated })
     }
 
+    /// Whether it contains measurements, and not only fields of the scene.
+    pub(super) fn measures(&self) -> bool {
+        self.rows.iter().any(|row| !row.measured.is_empty() || row.force.is_some())
+    }
+
     /// Reads a table of candidate experiments, which contains only fields of the scene.
     ///
     /// # Errors
@@ -146,14 +152,23 @@ impl Columns {
             } else if name == FORCE_FILE {
                 columns.force = Some((place, sd_of(FORCE)?));
             } else if let Some(quantity) = name.strip_suffix(SD) {
-                let known = Quantity::named(quantity).is_some() || quantity == FORCE;
-                let beside = if quantity == FORCE { FORCE_FILE } else { quantity };
-                if !known || column(beside)?.is_none() {
+                let fault = |allowed: String| Err(InvalidInput::new(format!("column {name}"), "1 column", allowed));
+                if Quantity::named(quantity).is_none() && quantity != FORCE {
                     let allowed = format!(
                         "beside the column of the quantity whose standard deviation it is, one of {}, {FORCE}",
                         Quantity::names()
                     );
-                    return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed));
+                    let meant = did_you_mean_one_of(quantity, &allowed);
+                    return fault(allowed + &meant);
+                }
+                let beside = if quantity == FORCE { FORCE_FILE } else { quantity };
+                if column(beside)?.is_none() {
+                    let slip = table
+                        .header
+                        .iter()
+                        .find(|other| Quantity::named(other).is_none() && !did_you_mean(other, [beside]).is_empty());
+                    let slip = slip.map_or_else(String::new, |slip| format!("; is the column {slip} misspelt?"));
+                    return fault(format!("beside the column {beside}, whose standard deviation it is{slip}"));
                 }
             } else {
                 let path = FieldPath::parse(name).ok_or_else(|| {

@@ -9,7 +9,7 @@ use contact_models::Law;
 use serde_json::{Value, json};
 use vibroimpact_sim::modal::{History, Settings, Solution};
 
-use super::data::{Data, Row};
+use super::data::{Data, FORCE_FILE, Row};
 use super::free::Free;
 use super::gauge::Signal;
 use super::quantity::Quantity;
@@ -18,6 +18,7 @@ use crate::in_scene::in_scene;
 use crate::model::{Kept, chooses_modes};
 use crate::scene::FieldPath;
 use crate::scene::json::quote;
+use crate::scene::told::did_you_mean_one_of;
 use crate::scene::{InvalidInput, Scene};
 
 /// Tolerance of the solver: differences of impacts are to be smooth.
@@ -151,7 +152,18 @@ impl<'a> Model<'a> {
                 set(&path, json!(value));
             }
         }
-        faults.and_then(|()| Scene::from_value(&tree)).map_err(|fault| in_line(row, fault))
+        faults.and_then(|()| Scene::from_value(&tree)).map_err(|fault| in_line(row, self.or_quantity(fault)))
+    }
+
+    /// A column that is no field of the scene may be a measured quantity with a slip in its name.
+    fn or_quantity(&self, fault: InvalidInput) -> InvalidInput {
+        let column = self.data.fields.iter().find(|field| *field.path() == fault.field);
+        let (Some(column), true, true) = (column, fault.is_unknown, self.data.measures()) else { return fault };
+        let told = fault.allowed.to_string();
+        let fields = told.split(';').next().unwrap_or_default();
+        let allowed = format!("{fields}, {}, {FORCE_FILE}", Quantity::names());
+        let meant = did_you_mean_one_of(&column.to_string(), &allowed);
+        InvalidInput { allowed: allowed + &meant, ..fault }
     }
 
     /// The impact of a row.

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::scene::FieldPath;
 use crate::scene::json::{number, quote};
+use crate::scene::told::did_you_mean;
 
 /// The time constant of the gauge, which is not a field of the scene.
 pub(super) const TIME_CONSTANT: &str = "gauge.time_constant_s";
@@ -86,12 +87,24 @@ impl Free {
         }
         let found = FieldPath::parse(&self.field).and_then(|path| path.get(tree).cloned());
         match found {
-            None => Err(InvalidInput::missing(name, "a field that the scene states, as a number")),
+            None => {
+                let allowed = "a field that the scene states, as a number".to_owned() + &self.meant(tree);
+                Err(InvalidInput::missing(name, allowed))
+            }
             Some(value) => {
                 let allowed = "a field of the scene that is a finite number";
                 value.as_f64().ok_or_else(|| InvalidInput::new(name, quote(&value), allowed))
             }
         }
+    }
+
+    /// The field beside which this one would be, if one there has a similar name.
+    fn meant(&self, tree: &Value) -> String {
+        let (holder, name) = self.field.rsplit_once('.').unwrap_or(("", &self.field));
+        let beside =
+            if holder.is_empty() { Some(tree) } else { FieldPath::parse(holder).and_then(|path| path.get(tree)) };
+        let names = beside.and_then(Value::as_object).into_iter().flatten().map(|(name, _)| name.as_str());
+        did_you_mean(name, names)
     }
 
     pub(super) fn is_of_gauge(&self) -> bool {

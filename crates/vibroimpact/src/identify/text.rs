@@ -82,6 +82,18 @@ fn interval(parameter: &Identified) -> String {
     }
 }
 
+/// How many of the starting points lead to the least robust sum.
+fn agreeing(found: &Identification) -> usize {
+    let best = found.starts.iter().filter_map(|start| start.robust_sum).fold(f64::INFINITY, f64::min);
+    let near = |sum: Option<f64>| sum.is_some_and(|sum| sum <= 1.01 * best + 1e-9);
+    found.starts.iter().filter(|start| near(start.robust_sum)).count()
+}
+
+/// Whether most of the starting points lead elsewhere: the sum then has many minima, and the least may be missed.
+fn is_rough(found: &Identification) -> bool {
+    2 * agreeing(found) < found.starts.len()
+}
+
 fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {
     if found.lack_of_fit.is_empty() {
         let reason = if found.degrees_of_freedom == 0 {
@@ -92,7 +104,9 @@ fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {
         say("fit", &format!("cannot be judged: {reason}"));
     }
     for test in &found.lack_of_fit {
-        let judged = if test.noticed {
+        let judged = if test.noticed && (is_rough(found) || found.starts.len() < 2) {
+            "THE MODEL DOES NOT FIT, or the search has missed the least sum: do not trust the values and intervals above"
+        } else if test.noticed {
             "THE MODEL DOES NOT FIT: do not trust the values and intervals above"
         } else if test.test == "chi-square" && test.probability > TOO_SMALL {
             "the misfit is smaller than the stated noise: the standard deviations are probably too large"
@@ -120,12 +134,20 @@ fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {
 }
 
 fn search(found: &Identification, say: &mut impl FnMut(&str, &str)) {
-    let best = found.starts.iter().filter_map(|start| start.robust_sum).fold(f64::INFINITY, f64::min);
-    let near = |sum: Option<f64>| sum.is_some_and(|sum| sum <= 1.01 * best + 1e-9);
-    let same = found.starts.iter().filter(|start| near(start.robust_sum)).count();
     if found.starts.len() > 1 {
+        let same = agreeing(found);
         let lead = if same == 1 { "leads" } else { "lead" };
-        say("search", &format!("{same} of {} starting points {lead} to the least robust sum", found.starts.len()));
+        let rough = match is_rough(found) {
+            true => {
+                ": there are other minima, and the intervals are too narrow if one is as low; try more starting \
+                 points, or leave out rows with many contacts"
+            }
+            false => "",
+        };
+        let count = found.starts.len();
+        say("search", &format!("{same} of {count} starting points {lead} to the least robust sum{rough}"));
+    } else {
+        say("search", "from one starting point: the sum may have lower minima elsewhere");
     }
     if !found.converged {
         say("search", "NOT CONVERGED: these are the best values that were met");

@@ -8,6 +8,7 @@ use vibroimpact_sim::modal::{Derivative, Stencil};
 use super::sides::stay;
 use super::table::LeftOut;
 use crate::scene::json::{number, quote};
+use crate::scene::told::did_you_mean_one_of;
 use crate::scene::{FieldPath, InvalidInput};
 
 /// Distance of neighbours relative to the value: the first hundreds of modes change smoothly over it, and it costs five of their
@@ -50,7 +51,12 @@ impl<T> Neighbours<T> {
         let path = FieldPath::parse(field).ok_or_else(|| {
             InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
         })?;
-        let known = || format!("the path of a number that the scene states, one of {}", all_numbers(tree).0.join(", "));
+        let known = || {
+            let known =
+                format!("the path of a number that the scene states, one of {}", all_numbers(tree).0.join(", "));
+            let meant = did_you_mean_one_of(field, &known);
+            known + &meant
+        };
         let stated = path.get(tree).ok_or_else(|| InvalidInput::new("--by", quote(&field.into()), known()))?;
         let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
         let found = Neighbours::beside(tree, (field, &path, value), by);
@@ -184,6 +190,10 @@ fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidI
 /// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states.
 pub(super) fn around<T>((tree, fields): (&Value, &[String]), by: &Posing<T>) -> Result<Around<T>, InvalidInput> {
     if !fields.is_empty() {
+        let twice = fields.iter().enumerate().find(|(i, field)| fields[..*i].contains(field));
+        if let Some((_, field)) = twice {
+            return Err(InvalidInput::new("--by", field.as_str(), "stated only once"));
+        }
         let near = fields.iter().map(|field| Neighbours::of(tree, field, by)).collect::<Result<_, _>>()?;
         return Ok(Around { near, left_out: Vec::new(), named: true });
     }
