@@ -288,7 +288,7 @@ fn fields_without_a_derivative_are_named() {
         ("pinned-beam.json", &["--by", "structure.kind"], "the path of a number"),
         ("pinned-beam.json", &["--by", "modes"], "can vary continuously"),
         ("pinned-beam.json", &["--by", ".."], "the path of a field"),
-        ("pinned-beam.json", &["--of", "restitutions"], "an output of this scene"),
+        ("pinned-beam.json", &["--of", "restitutions"], "; did you mean restitution?"),
         ("pinned-beam.json", &["--set", "model=infinite-beam"], "rigid"),
         ("../assemblies/shaken-table.json", &["--by", "bodies.ball.mass"], "bodies.ball.mass_kg"),
         ("../assemblies/shaken-table.json", &["--of", "restitution"], "an output of this scene"),

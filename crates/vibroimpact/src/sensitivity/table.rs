@@ -6,6 +6,7 @@ use invalid_input::InvalidInput;
 use serde::Serialize;
 use vibroimpact_sim::modal::{Derivative, NearMiss};
 
+use crate::scene::told::did_you_mean;
 use crate::text::small;
 
 /// A derivative of an output with respect to a field, in the unit of the output over that of the field.
@@ -119,8 +120,10 @@ impl Table {
     /// The derivatives of an output.
     pub(super) fn rows(&self, output: &str) -> Result<Rows<'_>, InvalidInput> {
         let by_field = self.derivatives.get(output).ok_or_else(|| {
-            let known = self.derivatives.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            InvalidInput::new("--of", output, format!("an output of this scene, one of {known}"))
+            let known = || self.derivatives.keys().map(String::as_str);
+            let meant = did_you_mean(output, known());
+            let known = known().collect::<Vec<_>>().join(", ");
+            InvalidInput::new("--of", output, format!("an output of this scene, one of {known}{meant}"))
         })?;
         let mut rows: Vec<Row> = Vec::new();
         for field in &self.fields {

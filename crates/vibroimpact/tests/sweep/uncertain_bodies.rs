@@ -119,6 +119,7 @@ fn errors_name_field_value_and_what_is_allowed() {
             json!(["wall.force_n"]),
             "sampling.outputs[0] = \"wall.force_n\" is not allowed; it must be one of end_s, ",
         ),
+        ("/sampling/outputs", json!(["largest_forse_n"]), "; did you mean largest_force_n?"),
         (
             "/sampling/outputs",
             json!(["end_s", "end_s"]),

@@ -12,6 +12,7 @@ use super::distribution::Distribution;
 use super::sobol::MOST_COORDINATES;
 use crate::scene::FieldPath;
 use crate::scene::json::{number, quote};
+use crate::scene::told::did_you_mean;
 use crate::sweep::results::Results;
 use crate::sweep::values::MAX_POINTS;
 
@@ -84,7 +85,10 @@ impl Uncertain {
     /// The outputs of a sweep with these results.
     pub(in crate::sweep) fn tell(&mut self, told: Told, results: &Results) -> Result<(), InvalidInput> {
         let all = results.outputs();
-        let allowed = || format!("one of {}", all.join(", "));
+        let allowed = |name: &str| {
+            let meant = did_you_mean(name, all.iter().map(String::as_str));
+            format!("one of {}{meant}", all.join(", "))
+        };
         let names = told.outputs.unwrap_or_else(|| results.told().iter().map(|name| (*name).to_owned()).collect());
         if !(1..=MOST_OUTPUTS).contains(&names.len()) {
             let allowed = format!("a list of 1 to {MOST_OUTPUTS} results of the sweep");
@@ -93,7 +97,7 @@ impl Uncertain {
         for (i, name) in names.iter().enumerate() {
             let fault = |allowed| InvalidInput::new(("outputs", i), quote(&name.as_str().into()), allowed);
             if !all.contains(name) {
-                return Err(fault(allowed()));
+                return Err(fault(allowed(name)));
             }
             if names[..i].contains(name) {
                 return Err(fault("stated only once".to_owned()));
