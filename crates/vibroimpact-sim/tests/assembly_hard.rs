@@ -2,7 +2,7 @@
 //! balanced.
 
 use crate::common::Intervals;
-use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
+use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment, TautString};
 use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
@@ -262,6 +262,38 @@ fn a_run_that_begins_within_a_contact_continues_it() {
         }
         assert!(receding > 2, "{law:?}");
     }
+}
+
+/// A strong dashpot holds one point of a light string that vibrates. The rate of the overlap is then a small difference of the rates of
+/// the modes, whose rounding the dashpot turns into a force; shorter panels would not reduce it.
+#[test]
+fn rounding_at_a_strong_dashpot_does_not_shorten_the_steps() {
+    let (length_m, tension_n, mass_per_length_kg_m) = (1.5, 130.0, 1.6e-3);
+    let modes =
+        TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2: 0.0 }.modes(14).unwrap();
+    let (held, pushed) = (modes.shapes_at(1.285).unwrap(), modes.shapes_at(0.163).unwrap());
+    let mode = |&omega_rad_s: &f64| BodyMode { omega_rad_s, damping_ratio: 0.0 };
+    let law: Law = KelvinVoigt::new(2e5, 160.0).unwrap().into();
+    let contacts = [[on(0, &held), Point::Ground], [Point::Ground, on(0, &held)]];
+    let force = Force::Harmonic { force_n: 20.0, omega_rad_s: 600.0, phase_rad: 0.0 };
+    let assembly = Assembly {
+        bodies: vec![Body::at_rest(modes.omega_rad_s().iter().map(mode).collect())],
+        contacts: contacts.map(|sides| Contact { sides, gap_m: 0.0, law }).into(),
+        loads: vec![Load { body: 0, shape: pushed, force }],
+    };
+    let of = |tolerance: f64| {
+        let settings = Settings { tolerance, ..Settings::until(0.02) };
+        run(&assembly, &settings, &mut ()).unwrap()
+    };
+    let (coarse, fine) = (of(1e-9), of(1e-12));
+    assert!(coarse.contacts.iter().all(|contact| contact.statistics.intervals > 3), "{:?}", coarse.contacts);
+    let error = |part: fn(&Run) -> &Vec<Vec<f64>>| {
+        let pairs = || part(&coarse)[0].iter().zip(&part(&fine)[0]);
+        pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / pairs().map(|(a, _)| a.abs()).fold(0.0, f64::max)
+    };
+    assert!(error(|run| &run.amplitude).max(error(|run| &run.rate)) < 1e-9);
+    let steps = [&coarse, &fine].map(|run| run.counts.contact_steps);
+    assert!(steps[1] < 4 * steps[0], "{steps:?}");
 }
 
 #[test]

@@ -4,12 +4,10 @@
 use super::collocate::Collocated;
 use super::enclosure::{Pull, of_panel};
 use super::event::{Beginning, EventFunction, Verdict};
-use super::motion::{March, Target};
+use super::motion::{MAGNIFIED, March, Target};
 use super::state::Touch;
-use super::system::Span;
 use crate::panel::dyadic::level_within;
 use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
-use crate::panel::vector::{sum_over, vectorized};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
 const TAIL: f64 = 10.0;
@@ -59,8 +57,7 @@ impl<'a> March<'a> {
             let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
                 let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
-                // interpolation of a rate magnifies rounding
-                let noise = noise * (per_overlap + 50.0 * per_rate);
+                let noise = noise * (per_overlap + MAGNIFIED * per_rate);
                 let function = EventFunction {
                     start,
                     nodal,
@@ -120,32 +117,6 @@ impl<'a> March<'a> {
             }
             None => (state.touch_m() - overlap, -rate),
         }
-    }
-
-    /// Rounding of an overlap as it is summed up over a panel of `h` (m).
-    fn panel_noise(&self, c: usize, h: f64) -> f64 {
-        let of = |Span { modes, psi }: &Span| {
-            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
-            let [sum] = vectorized(
-                #[inline(always)]
-                || {
-                    sum_over(
-                        [psi, omega, a, b],
-                        #[inline(always)]
-                        |[psi, omega, a, b]| {
-                            let turned = omega * h;
-                            [psi.abs() * ((if turned < 1.0 { turned } else { 1.0 }) * a.abs() + h * b.abs())]
-                        },
-                    )
-                },
-            );
-            sum
-        };
-        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
-        let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
-        // the relative accuracy of the motion that corresponds to the contact's momentum is the same
-        let moved = moved.max(self.states[c].speed_m_s() * h);
-        tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
     }
 
     /// Acceleration of the overlap of a contact now (m/s^2), while these are closed.

@@ -207,8 +207,10 @@ impl<'a> March<'a> {
 
     /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
-        let of = |(c, force): (&usize, &Legendre)| force.truncation() * landed.length / self.impulse_tolerance(*c);
-        window.contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
+        let of = |((c, force), end): ((&usize, &Legendre), &[f64; 3])| {
+            self.error(*c, force.truncation(), landed.length, (end[0], end[1]))
+        };
+        window.contacts.iter().zip(&landed.force).zip(&landed.end).map(of).fold(0.0, f64::max)
     }
 
     fn commit_landed(&mut self, window: &Window, landed: &Landed) {

@@ -8,7 +8,7 @@
 
 use super::judge::Judgement;
 use super::ledger::Account;
-use super::motion::{Horizon, March};
+use super::motion::{GROWTH, Horizon, March};
 use super::rest;
 use super::solution::{Outcome, Reason};
 use super::state::State;
@@ -16,8 +16,6 @@ use super::trial::Trial;
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use contact_models::{ContactLaw, LARGEST, check_contract};
 
-/// A panel is doubled when its error is this many times below the tolerance.
-const GROWTH: f64 = 250.0;
 /// Share of the time to an expected event that one panel may take.
 const SHARE: f64 = 0.85;
 /// Number of successive events without progress in time that counts as chatter.
@@ -150,10 +148,9 @@ impl<'a> March<'a> {
         }
         let mut error = 0.0f64;
         for (i, &c) in contacts[..closed].iter().enumerate() {
-            let tolerance = self.impulse_tolerance(c);
             // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
             let missed = (self.force_at(c, trial.end[i]) - trial.force[i].at(1.0)).abs();
-            error = error.max(trial.force[i].truncation() * h / tolerance).max(missed * h / tolerance);
+            error = error.max(self.error(c, trial.force[i].truncation().max(missed), h, trial.end[i]));
         }
         if error.is_nan() || error > 1.0 {
             // the error decreases at least like h^5, except on the first panels of a contact, which are short enough from the start

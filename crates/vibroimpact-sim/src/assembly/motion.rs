@@ -14,8 +14,14 @@ use super::system::{Span, System};
 use super::tables::Tables;
 use super::terminal::REACH;
 use crate::panel::dyadic::J_MIN;
-use crate::panel::vector::sum_over;
+use crate::panel::vector::{sum_over, vectorized};
 use contact_models::{ContactLaw, Memory};
+
+/// A panel is doubled when its error is this many times below the tolerance.
+pub(super) const GROWTH: f64 = 250.0;
+
+/// Interpolation of a rate from the overlaps at the nodes magnifies their rounding so many times.
+pub(super) const MAGNIFIED: f64 = 50.0;
 
 /// Share of the stated tolerance that is allowed for one panel.
 const STEP_SHARE: f64 = 0.1;
@@ -220,6 +226,32 @@ impl<'a> March<'a> {
         4.0 * f64::EPSILON * (self.system.links[c].spans.iter().map(of).sum::<f64>() + beside)
     }
 
+    /// Rounding of an overlap as it is summed up over a panel of `h` (m).
+    pub(super) fn panel_noise(&self, c: usize, h: f64) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+            let [sum] = vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        [psi, omega, a, b],
+                        #[inline(always)]
+                        |[psi, omega, a, b]| {
+                            let turned = omega * h;
+                            [psi.abs() * ((if turned < 1.0 { turned } else { 1.0 }) * a.abs() + h * b.abs())]
+                        },
+                    )
+                },
+            );
+            sum
+        };
+        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
+        let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
+        // the relative accuracy of the motion that corresponds to the contact's momentum is the same
+        let moved = moved.max(self.states[c].speed_m_s() * h);
+        tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
+    }
+
     /// Allowed error of the impulse on a panel (N s): a part of the exchanged momentum, but at most the impulse that would give the
     /// modes, even light ones, this part of the contact's energy.
     pub(super) fn impulse_tolerance(&self, c: usize) -> f64 {
@@ -227,6 +259,20 @@ impl<'a> March<'a> {
         let share = STEP_SHARE * tolerance * state.momentum;
         let energy = tolerance * state.momentum * state.speed_m_s();
         share.min((energy / self.system.links[c].mobility).sqrt()).max(f64::MIN_POSITIVE)
+    }
+
+    /// Error of the impulse on a panel of `h` relative to the allowed one, for an error of the force and the overlap and its rate at
+    /// the end. What the rounding of the rate changes in the force of a dashpot is omitted, because no shorter panel reduces it.
+    pub(super) fn error(&self, c: usize, force_n: f64, h: f64, (overlap, rate): (f64, f64)) -> f64 {
+        let tolerance = self.impulse_tolerance(c);
+        let error = force_n * h / tolerance;
+        match self.states[c].touch() {
+            Some(touch) if touch.force_by_rate && error * GROWTH >= 1.0 => {
+                let drag = self.law(c).force(&touch.branch, overlap, rate).per_rate_n_s_m.abs();
+                (force_n * h - MAGNIFIED * drag * self.panel_noise(c, h)).max(0.0) / tolerance
+            }
+            _ => error,
+        }
     }
 
     pub(super) fn clear_until(&self, c: usize) -> f64 {
