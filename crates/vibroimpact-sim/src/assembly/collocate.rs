@@ -315,8 +315,8 @@ fn fill(block: &mut Matrix, values: &[Force; Q], response: &Matrix, h: f64, diag
     }
 }
 
-/// Replaces a matrix by its inverse. The motion after a change of the forces waits for it: a product with the inverse takes
-/// a third of the time of the 15 steps, each waiting for the one before, of a substitution.
+/// Replaces a matrix by its inverse. Each iteration of Newton's method waits for the solution. A substitution has 15 steps, each of
+/// which waits for the one before; a product with the inverse takes a third of their time.
 #[inline(always)]
 fn invert(a: &mut Matrix) {
     exchange::<0>(a);

@@ -296,8 +296,8 @@ impl Loads {
         self.moved_by(contact, time_s, part(place, h), turns)
     }
 
-    /// Work of a contact's force over the sinusoids on a panel of `h`, which is exact, less its quadrature
-    /// ([`work_of_unit_forces`]), for which a sinusoid that turns far is no polynomial (J).
+    /// What quadrature ([`work_of_unit_forces`]) misses of the work of a contact's force over the sinusoids on a panel of `h` (J). The
+    /// quadrature is exact for polynomials, and a sinusoid that turns far is none.
     pub fn work_missed_j(&self, contact: usize, h: f64, turns: &Turns, force: &Legendre) -> f64 {
         let of = |(j, harmonic): (usize, &Harmonic)| {
             let now = harmonic.contacts[contact] * turns.start[j];

@@ -125,7 +125,7 @@ pub(crate) struct Record {
     /// Its stretches. If the bodies have separated for good, the last one is endless; otherwise the last one has zero length.
     pub stretches: Vec<Stretch>,
     pub nearest_miss: Option<NearMiss>,
-    /// Work on the contacts (J), without that which modes that turn fast on a panel add (`excess.rs`).
+    /// Work on the contacts (J), without what the balance adds for modes and harmonic loads that turn fast on a panel.
     pub contact_work_j: f64,
 }
 

@@ -154,11 +154,14 @@ impl<'a> March<'a> {
                 }
             }
             self.add_contact_work(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
-            self.contact_work_j += self.loads.work_missed_j(c, step_s(level), &trial.turns, &trial.force[i]);
         }
-        if self.account.is_some()
-            && let Some(excess) = self.tables.excess(self.system, level, closed)
-        {
+        if self.account.is_none() {
+            return;
+        }
+        for (&c, force) in closed.iter().zip(&trial.force) {
+            self.contact_work_j += self.loads.work_missed_j(c, step_s(level), &trial.turns, force);
+        }
+        if let Some(excess) = self.tables.excess(self.system, level, closed) {
             self.contact_work_j += excess.work_j(self.system, (&self.amplitude, &self.rate), closed, &trial.force);
         }
     }
