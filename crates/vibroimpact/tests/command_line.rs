@@ -168,6 +168,8 @@ fn modes_lists_frequencies_and_shapes_in_the_form_of_a_modal_structure() {
 
     let table = stdout(&run(folder.path(), &["modes", "scene.json", "--count", "3"]));
     assert_eq!(table.lines().count(), 4);
+    // without a number, ten of them
+    assert_eq!(stdout(&run(folder.path(), &["modes", "scene.json"])).lines().count(), 11);
 
     // The same impact, defined by those modes.
     let modal = json!({
@@ -176,6 +178,10 @@ fn modes_lists_frequencies_and_shapes_in_the_form_of_a_modal_structure() {
         "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
     });
     fs::write(folder.path().join("modal.json"), modal.to_string()).unwrap();
+    let short = ["--set", "structure.omega_rad_s=[10,20]", "--set", "structure.shape_at_location=[1,1]"];
+    let undamped = ["--set", "structure.damping_ratios=[0,0]"];
+    let table = stdout(&run(folder.path(), &[&["modes", "modal.json"][..], &short, &undamped].concat()));
+    assert_eq!(table.lines().count(), 3);
     let result = |name: &str| {
         let mut result: Value =
             serde_json::from_str(&stdout(&run(folder.path(), &["simulate", name, "--json"]))).unwrap();
@@ -320,7 +326,7 @@ fn usage_errors_exit_with_2_as_well() {
         &["simulate", "nowhere.json"],
         &["simulate", "."],
         &["simulate", "scene.json", "--jason"],
-        &["modes", "scene.json"],
+        &["modes"],
         &["modes", "scene.json", "--count", "many"],
         &["modes", "scene.json", "--count", "99999999"],
         &["fly"],

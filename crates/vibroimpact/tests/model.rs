@@ -143,6 +143,21 @@ fn a_restitution_that_does_not_converge_is_reported() {
     );
 }
 
+/// The force of a spring and dashpot jumps at first touch, so that it excites all modes of a string; but the dashpot takes their
+/// energy before the contact ends, and damping that of the fastest.
+#[test]
+fn a_dashpot_does_not_need_all_modes() {
+    let scene = json!({
+        "structure": { "kind": "string", "length_m": 0.65, "tension_n": 80, "mass_per_length_kg_m": 0.005, "damping_ratio": 0.01 },
+        "striker": { "mass_kg": 0.001, "speed_m_s": 1 },
+        "contact": { "law": "kelvin-voigt", "stiffness_n_m": 20000, "damping_n_s_m": 1 },
+        "location_m": 0.2, "tolerance": 1e-3
+    });
+    let found = answer(&scene);
+    assert!(found.settled && found.modes < 100 && found.cost.mode_steps < 50_000, "{found:?}");
+    assert!((found.restitution.unwrap() - reference(&scene)).abs() < 1e-3);
+}
+
 #[test]
 fn a_result_is_the_same_every_time() {
     let scene = Scene::from_value(&chapter3()).unwrap();

@@ -82,7 +82,7 @@ pub struct Interval {
     pub peak_force_n: f64,
     /// Largest compression (m).
     pub peak_compression_m: f64,
-    /// Rate of compression at first touch (m/s).
+    /// Rate of compression at first touch (m/s); negative for surfaces that overlap at the start and separate.
     pub approach_speed_m_s: f64,
     /// Rate of opening at the release (m/s).
     pub separation_speed_m_s: Option<f64>,

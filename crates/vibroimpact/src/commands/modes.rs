@@ -2,6 +2,7 @@
 
 use clap::Args;
 use vibroimpact::export::{self, Failure};
+use vibroimpact::scene::Structure;
 use vibroimpact::summary::ModeTable;
 use vibroimpact::{pictures, text};
 
@@ -10,7 +11,7 @@ use super::source::SceneSource;
 use super::{mode_count, of_option};
 
 pub const EXAMPLES: &str = "Examples:
-  vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
+  vibroimpact modes ball.json                    ten frequencies, and shapes at the point of impact
   vibroimpact modes ball.json --count 40 --json  the same as one JSON object of lists
   vibroimpact modes ball.json --count 6 --plot modes.svg
                                                  shapes along the beam or over the plate, with the location of impact;
@@ -18,14 +19,17 @@ pub const EXAMPLES: &str = "Examples:
 
 Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first and have omega 0.";
 
+/// Number of modes that are listed if none is stated.
+const COUNT: usize = 10;
+
 /// The modes to list.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// Number of modes, from the lowest
+    /// Number of modes, from the lowest; default: 10, or all of a shorter list
     #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
-    count: usize,
+    count: Option<usize>,
     /// Print one JSON object in place of the table
     #[arg(long)]
     json: bool,
@@ -37,6 +41,10 @@ pub struct Arguments {
 pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
     let scene = scene.impact()?;
     picture.require_room()?;
+    let count = count.unwrap_or(match &scene.structure {
+        Structure::Modal(listed) => COUNT.min(listed.omega_rad_s.len()),
+        _ => COUNT,
+    });
     let modes = scene.mode_shapes(count).map_err(of_option("--count"))?;
     let converged = scene.converged_modes(count).map_err(of_option("--count"))?;
     let printed = if json { export::json(&ModeTable::new(&modes, converged))? } else { text::modes(&modes, converged) };

@@ -12,20 +12,32 @@
 //! where `F(xi, xi')` is the law of contact and `v` the speed of impact. `J` is at most what the striker gives up to a mode of the
 //! mass `1/(1/m + A)`, where `A = (2g - 1) c_N omega_N^2` is the inverse mass of the modes up to `N` at the location. It follows from
 //! the compliance `c_N` of the truncated modes if shapes have the same mean square and frequencies grow as the power `g` of their
-//! number. The share of the striker's energy in the truncated modes is then
+//! number. The share of the striker's energy that the truncated modes have received is then, with the speed of impact `v0`,
 //!
 //! ```text
-//! E(N) = c_N omega_N^2 J(omega_N)^2 / (m v^2) (2g - 1)/(g (2n + 2) - 1).
+//! E(v) = c_N omega_N^2 J(omega_N)^2 / (m v0^2) (2g - 1)/(g (2n + 2) - 1).
 //! ```
+//!
+//! As the contact ends, they receive energy again from the force that vanishes, for which the speed `v1` of a rebound from an
+//! immovable location takes the place of `v0`. Until then, what they received first decays within the duration `T` of the contact:
+//! by their own damping ratio `zeta`, and by the damping `c = dF/dxi'` of a law that depends on the rate. It acts between the
+//! striker and a mode of the mass `1/(c_N omega_N^2)`, and prevents the mode from vibrating if it is strong:
+//!
+//! ```text
+//! E(N) = ( E(v0) e^(-(2 zeta omega_N + r) T) + E(v1) )/2,   r = p/(1 + (p/(2 omega_N))^2),   p = c c_N omega_N^2.
+//! ```
+//!
+//! The force of a spring and dashpot jumps at first touch and vanishes smoothly, so that this decay decides how many modes matter.
 //!
 //! The guess is the `N` from which on this is less than a share of the tolerance. It is mostly within a factor of ten of the energy
 //! that the remainder modes have after a single contact (`cargo xtask study-auto`), and depends on a high power of `N`.
 
-use contact_models::{ContactLaw, Memory};
-use vibroimpact_sim::modal::Mode;
+use contact_models::{ContactLaw, Law, Memory};
+use vibroimpact_sim::modal::{Mode, Striker};
 
 use super::Cost;
-use super::pose::{Pose, Source};
+use super::left_out::taken_by_dashpot;
+use super::pose::{Pose, Source, Wall};
 use crate::scene::{BeamTheory, InvalidInput, Waves, compliance};
 
 /// Factor from one number of modes to the next.
@@ -60,6 +72,68 @@ fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
     square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
 }
 
+/// A mode that is fast compared with the contact.
+struct Fast {
+    omega_rad_s: f64,
+    damping_ratio: f64,
+    /// `A`, of the modes up to this one (1/kg).
+    inverse_mass: f64,
+}
+
+/// How a contact excites fast modes, and damps them.
+struct Excitation {
+    striker: Striker,
+    law: Law,
+    wall: Wall,
+    /// `g`.
+    growth: f64,
+    /// `c` (N s/m), halfway to the largest compression.
+    drag_n_s_m: f64,
+    /// `v1`.
+    separation_speed_m_s: f64,
+}
+
+impl Excitation {
+    fn new(pose: &Pose, growth: f64) -> Excitation {
+        let (striker, law, wall) = (pose.striker, pose.law, pose.wall);
+        let branch = law.touch(&Memory::default(), striker.speed_m_s);
+        let drag_n_s_m = law.force(&branch, 0.5 * wall.compression_m, 0.0).per_rate_n_s_m;
+        // a law that does not depend on the rate loses energy by a stiffer unloading, which excites fast modes as much
+        let restitution = match law.wall_restitution(striker.mass_kg, striker.speed_m_s) {
+            Ok(restitution) if drag_n_s_m > 0.0 => restitution,
+            _ => 1.0,
+        };
+        let separation_speed_m_s = restitution * striker.speed_m_s;
+        Excitation { striker, law, wall, growth, drag_n_s_m, separation_speed_m_s }
+    }
+
+    /// `E(N)`.
+    fn left_in_others(&self, mode: &Fast) -> f64 {
+        let Fast { omega_rad_s, damping_ratio, inverse_mass } = *mode;
+        let p = self.drag_n_s_m * inverse_mass / (2.0 * self.growth - 1.0);
+        let decay = 2.0 * damping_ratio * omega_rad_s + p / (1.0 + (0.5 * p / omega_rad_s).powi(2));
+        let speed = self.striker.speed_m_s;
+        let begins = self.received(mode, speed, speed);
+        let ends = self.received(mode, self.separation_speed_m_s, 0.0);
+        0.5 * (begins * (-decay * self.wall.duration_s).exp() + ends)
+    }
+
+    /// `E(v)` for this speed, with the force of the law at this rate of compression.
+    fn received(&self, mode: &Fast, speed_m_s: f64, rate_m_s: f64) -> f64 {
+        let Fast { omega_rad_s, inverse_mass, .. } = *mode;
+        let Striker { mass_kg, speed_m_s: of_impact } = self.striker;
+        let branch = self.law.touch(&Memory::default(), of_impact);
+        let compression_m = (speed_m_s / omega_rad_s).min(self.wall.compression_m);
+        let force = self.law.force(&branch, compression_m, rate_m_s);
+        let exponent = compression_m * force.per_compression_n_m / force.force_n;
+        let exponent = if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 };
+        let most = 2.0 / (1.0 / mass_kg + inverse_mass);
+        let impulse_over_speed = libm::tgamma(exponent + 1.0) * force.force_n / (omega_rad_s * of_impact);
+        let energy = inverse_mass * impulse_over_speed.min(most).powi(2) / mass_kg;
+        energy / (self.growth * (2.0 * exponent + 2.0) - 1.0)
+    }
+}
+
 /// `g`, and the share of the tolerance at the guess.
 fn growth(pose: &Pose) -> (f64, f64) {
     match pose.scene.structure.bending_theory() {
@@ -68,37 +142,26 @@ fn growth(pose: &Pose) -> (f64, f64) {
     }
 }
 
-/// `E(N)` for this frequency of mode `N` and this inverse mass `A` of the modes up to it.
-fn left_in_others(pose: &Pose, omega_rad_s: f64, inverse_mass: f64) -> f64 {
-    let (wall, striker, (growth, _)) = (&pose.wall, &pose.striker, growth(pose));
-    let (mass, speed) = (striker.mass_kg, striker.speed_m_s);
-    let branch = pose.law.touch(&Memory::default(), speed);
-    let compression_m = (speed / omega_rad_s).min(wall.compression_m);
-    let force = pose.law.force(&branch, compression_m, speed);
-    let exponent = compression_m * force.per_compression_n_m / force.force_n;
-    let exponent = if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 };
-    let most = 2.0 / (1.0 / mass + inverse_mass);
-    let impulse_over_speed = (libm::tgamma(exponent + 1.0) * force.force_n / (omega_rad_s * speed)).min(most);
-    inverse_mass * impulse_over_speed.powi(2) / (mass * (growth * (2.0 * exponent + 2.0) - 1.0))
-}
-
 /// The expected number of modes, before any is computed.
-fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
+fn expected(pose: &Pose, contact: &Excitation, target: f64) -> Result<usize, InvalidInput> {
     let most = pose.source.most();
-    let first = |estimate: &dyn Fn(usize) -> (f64, f64)| {
-        let enough = |n: &usize| {
-            let (omega, added) = estimate(*n);
-            left_in_others(pose, omega, added) <= target
-        };
+    let first = |estimate: &dyn Fn(usize) -> Fast| {
+        let enough = |n: &usize| contact.left_in_others(&estimate(*n)) <= target;
         (FEWEST + 1..most).find(enough).unwrap_or(most)
     };
     Ok(match &pose.source {
         Source::Beam { beam, location_m, .. } => match Waves::new(beam, *location_m) {
-            Ok(Some(waves)) => first(&|n| waves.expected(n)),
+            Ok(Some(waves)) => first(&|n| {
+                let (omega_rad_s, inverse_mass) = waves.expected(n);
+                Fast { omega_rad_s, damping_ratio: beam.damping_ratio_at(n, omega_rad_s), inverse_mass }
+            }),
             Ok(None) => FEWEST,
             Err(fault) => return Err(fault.within("structure")),
         },
-        Source::Computed { structure, .. } => first(&|n| structure.estimate(n).unwrap_or_default()),
+        Source::Computed { structure, .. } => first(&|n| {
+            let (omega_rad_s, inverse_mass) = structure.estimate(n).unwrap_or_default();
+            Fast { omega_rad_s, damping_ratio: structure.damping_ratio(), inverse_mass }
+        }),
         Source::Listed { .. } => most,
     })
 }
@@ -106,10 +169,11 @@ fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
 /// The number of modes with which the restitution may have converged.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<usize, InvalidInput> {
     let (growth, share) = growth(pose);
-    let target = share * pose.tolerance;
+    let target = share * pose.tolerance / taken_by_dashpot(&pose.law, &pose.striker);
+    let contact = Excitation::new(pose, growth);
     let most = pose.source.most();
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
-    let mut computed = (expected(pose, target)? + 2).min(most);
+    let mut computed = (expected(pose, &contact, target)? + 2).min(most);
     let found = loop {
         let enough = pose.scene.structure.enough_for_remainder(pose.scene.place(), computed);
         let known = pose.first(enough, cost)?;
@@ -119,9 +183,10 @@ pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<usize, InvalidIn
         // near an end slow modes hardly move the location, and E(N) grows before it decreases
         let last_above = (rigid + FEWEST..modes.len()).filter(|&k| {
             answered += compliance(&modes[k..=k]);
-            let omega = modes[k].omega_rad_s;
+            let Mode { omega_rad_s, damping_ratio, .. } = modes[k];
             let left_out_m_n = (whole - answered).max(0.0);
-            left_in_others(pose, omega, (2.0 * growth - 1.0) * left_out_m_n * omega * omega) > target
+            let inverse_mass = (2.0 * growth - 1.0) * left_out_m_n * omega_rad_s * omega_rad_s;
+            contact.left_in_others(&Fast { omega_rad_s, damping_ratio, inverse_mass }) > target
         });
         match last_above.last() {
             None => break rigid + FEWEST + 1,

@@ -4,7 +4,7 @@
 //! the one before,
 //!
 //! ```text
-//! u = max( 3 d_1, d_2, e_r, d_s ) + d_c,      e_r = 3 E_r / E max(1, R^(-1/2)).
+//! u = max( 3 d_1, d_2, e_r, d_s ) + d_c,      e_r = 3 D E_r / E max(1, R^(-1/2)).
 //! ```
 //!
 //! Changes that decrease as `1/N` add up to 2.4 times the one by the last step of a factor of 1.4, and to 3 times if they decrease as
@@ -13,7 +13,9 @@
 //! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
 //! the truncated modes; if they vibrate, the force was too fast for them. This share is known from one impact alone, and detects
 //! most accidental agreements. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
-//! remainder modes; the number of modes within its spectrum is then larger by a factor of up to `R^(-1/2)`. `d_s`, for lists, is
+//! remainder modes; the number of modes within its spectrum is then larger by a factor of up to `R^(-1/2)`. A dashpot, whose force
+//! jumps at first touch, takes most of the energy of the remainder modes before the contact ends, and then `D = 10`, otherwise 1.
+//! `d_s`, for lists, is
 //! the change with a single remainder mode in place of several, because the extrapolation of a list is an assumption. `d_c` is the
 //! change if the static compliance, which all numbers of modes share, is larger by its uncertainty; it is zero if the compliance
 //! has a closed form.
@@ -32,6 +34,7 @@
 //!
 //! If the restitution of another structure does not converge, the larger of both estimates counts.
 
+use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
 use crate::scene::compliance;
@@ -40,6 +43,8 @@ use crate::scene::compliance;
 /// remainder modes.
 const CAUTION: f64 = 3.0;
 const OF_ENERGY: f64 = 3.0;
+/// `D` for a force that jumps at first touch.
+const TAKEN: f64 = 10.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
 /// Weight of changes at the end of a list, where no further number of modes can show whether two agree by accident.
@@ -87,6 +92,13 @@ impl Change {
 /// Factor for a contact that is so short that it hardly moves the remainder modes.
 pub(super) fn too_short(resolution: f64) -> f64 {
     if resolution < 1.0 { resolution.max(f64::MIN_POSITIVE).powf(-0.5) } else { 1.0 }
+}
+
+/// `D`, the factor for a force that jumps at first touch.
+pub(super) fn taken_by_dashpot(law: &Law, striker: &Striker) -> f64 {
+    let branch = law.touch(&Memory::default(), striker.speed_m_s);
+    let jumps = law.force(&branch, 0.0, striker.speed_m_s).force_n > 0.0;
+    if jumps { TAKEN } else { 1.0 }
 }
 
 /// Possible change by the truncated modes at the end of a list, from its changes, the latest first.

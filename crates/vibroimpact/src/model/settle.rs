@@ -22,7 +22,8 @@ use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, energy_of_remainder, still_growing, too_short, with_one_remainder_mode, with_softer_remainder,
+    Change, at_the_end, energy_of_remainder, still_growing, taken_by_dashpot, too_short, with_one_remainder_mode,
+    with_softer_remainder,
 };
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
@@ -96,7 +97,9 @@ impl Rung {
         let (solution, recording) = solve(pose, &impact, cost)?;
         let Impact { structure, .. } = &impact;
         let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
-        let energy = energy_of_remainder(structure, remainder_modes, &solution, &pose.striker) * too_short(resolution);
+        let energy = energy_of_remainder(structure, remainder_modes, &solution, &pose.striker)
+            * too_short(resolution)
+            * taken_by_dashpot(&pose.law, &pose.striker);
         Ok(Rung { count, impact, solution, recording, resolution, energy, tail: None })
     }
 

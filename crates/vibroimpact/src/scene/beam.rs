@@ -188,6 +188,11 @@ impl Beam {
         constant.then(|| self.damping_ratios.iter().copied().fold(self.damping_ratio, f64::max))
     }
 
+    /// The damping ratio of the elastic mode `n`, from zero, if its frequency is this.
+    pub(crate) fn damping_ratio_at(&self, n: usize, omega_rad_s: f64) -> f64 {
+        self.damping().of(Some(n), omega_rad_s)
+    }
+
     fn damping(&self) -> Damping<'_> {
         Damping {
             ratio: self.damping_ratio,
