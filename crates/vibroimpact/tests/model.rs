@@ -154,7 +154,7 @@ fn a_dashpot_does_not_need_all_modes() {
         "location_m": 0.2, "tolerance": 1e-3
     });
     let found = answer(&scene);
-    assert!(found.settled && found.modes < 100 && found.cost.mode_steps < 50_000, "{found:?}");
+    assert!(found.settled && found.modes < 200 && found.cost.mode_steps < 50_000, "{found:?}");
     assert!((found.restitution.unwrap() - reference(&scene)).abs() < 1e-3);
 }
 
