@@ -25,6 +25,22 @@ fn run(receptance: &Receptance, law: &dyn ContactLaw) -> Solution {
     solve_law(receptance, &UNIT, law, &Settings::default()).unwrap()
 }
 
+/// Near the critical S the striker comes to rest after its first contact but for 2.8e-6 of its speed, and 434 contacts follow,
+/// each slower by far than the one before, down to 8.6e-21 of the first. Both solvers find them all.
+#[test]
+fn slow_contacts_keep_their_digits() {
+    let once = Settings { estimate_uncertainty: false, ..Settings::default() };
+    let exact = solve(Structure::Beam, 1.5606, &once).unwrap();
+    let found = solve_law(&power(0.5), &UNIT, &Hertz::new(1.5606_f64.sqrt()).unwrap(), &once).unwrap();
+    assert_eq!((exact.separations(), found.separations()), (434, 434));
+    for (a, b) in found.sub_impacts.iter().zip(&exact.sub_impacts) {
+        // the speed left after the first contact has lost six digits to both
+        let error = (a.closing_speed / b.closing_speed - 1.0).abs();
+        assert!(error < 1e-6, "{error:e} at {b:?}");
+    }
+    assert_eq!(found.outcome, Outcome::Stopped(StopReason::ContactLasts));
+}
+
 /// Hertz contact by the general solver and by the one made for it: every contact, the restitution and the peak, with 21
 /// contacts at S = 1.7.
 #[test]

@@ -203,26 +203,19 @@ impl<'a> Contact<'a> {
         let gap = h * elapsed.iter().copied().fold(1.0, f64::min);
         let near = self.near.iter().flat_map(|panel| panel.impulses(tables, panel.behind + gap));
         let impulses: Vec<Impulse> = self.since.impulses().chain(near).collect();
-        elapsed
-            .iter()
-            .map(|e| {
-                let tau = h * e;
-                let theta = self.now + tau;
-                let (bend, gain) = self.before.bend(theta);
-                let (mut memory, mut slope) = (0.0, 0.0);
-                for impulse in &impulses {
-                    let (value, rate) = self.kernel.values(impulse.age + tau);
-                    memory += impulse.weight * value;
-                    slope += impulse.weight * rate;
-                }
-                let line = self.level + self.touch.closing * theta;
-                (
-                    line + bend - (self.moment + self.impulse * tau) - memory,
-                    self.touch.closing + gain - self.impulse - slope,
-                )
-            })
-            .collect::<(Vec<f64>, Vec<f64>)>()
-            .into()
+        let after: Vec<f64> = elapsed.iter().map(|e| h * e).collect();
+        let (mut memory, mut slope) = (vec![0.0; after.len()], vec![0.0; after.len()]);
+        for &impulse in &impulses {
+            self.kernel.add_values(impulse, &after, &mut memory, &mut slope);
+        }
+        for ((tau, memory), slope) in after.iter().zip(&mut memory).zip(&mut slope) {
+            let theta = self.now + tau;
+            let (bend, gain) = self.before.bend(theta);
+            let line = self.level + self.touch.closing * theta;
+            *memory = line + bend - (self.moment + self.impulse * tau) - *memory;
+            *slope = self.touch.closing + gain - self.impulse - *slope;
+        }
+        [memory, slope]
     }
 
     /// Solves one panel from now on.
@@ -337,11 +330,6 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// Speed of the striker towards the structure.
-    fn body_speed(&self) -> f64 {
-        self.touch.body - self.impulse
-    }
-
     /// The flight that follows release, and the past as seen from there.
     pub fn departure(mut self) -> (Departure, History) {
         self.past.advance(self.now);
@@ -350,7 +338,13 @@ impl<'a> Contact<'a> {
         let youngest = impulses.iter().fold(f64::INFINITY, |least, impulse| least.min(impulse.age));
         self.past.push(impulses, youngest, self.now);
         let free = FreeMotion::new(self.kernel, &self.past);
-        (Departure { x: self.x, rate: self.rate, body: self.body_speed(), free }, self.past)
+        // Where the structure's speed follows from the past alone, the sum of both speeds has the digits that one minus all impulses
+        // loses as the striker slows down.
+        let body = match self.kernel.instant() {
+            0.0 => self.rate + free.structure_speed(),
+            _ => self.touch.body - self.impulse,
+        };
+        (Departure { x: self.x, rate: self.rate, body, free }, self.past)
     }
 }
 

@@ -4,26 +4,28 @@
 //! vanishes at `y = 0`, the integrand is `y^(2 q + 1)` times a smooth function, and the Gauss-Jacobi rule of that
 //! weight integrates it to rounding.
 
-use crate::infinite::problem::Structure;
+use crate::infinite::history::Impulse;
+use crate::infinite::problem::{NODES, Structure};
 use crate::infinite::receptance::{Receptance, Scale};
 use crate::infinite::rule::{Kind, Tables, gauss, legendre};
 use gauss_quad::{FiniteAboveNegOneF64, GaussJacobi};
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
+use std::sync::{Arc, OnceLock};
 
 /// Nodes of the rules for the weights.
 const POINTS: NonZeroUsize = NonZeroUsize::new(64).unwrap();
 
 /// Weights of nodal forces on one kind of panel: rows `0..p` belong to the nodes, row `p` to the end. Each is for a
 /// panel of length 1.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Weights {
     /// `int (t_i - s) f ds`.
-    linear: Vec<f64>,
+    linear: Arc<[f64]>,
     /// `int f ds`.
-    impulse: Vec<f64>,
+    impulse: Arc<[f64]>,
     /// `int (t_i - s)^p f ds` and, for `p > 0`, `int (t_i - s)^(p-1) f ds`, of each term.
-    memory: Vec<(Vec<f64>, Vec<f64>)>,
+    memory: Vec<(Arc<[f64]>, Arc<[f64]>)>,
 }
 
 /// `kappa(t) = sum_k c_k t^(p_k)` in the units of the impact, so that `kappa(1) = 1`.
@@ -51,9 +53,30 @@ impl Kernel {
         let terms = receptance.terms().iter().map(|term| nondimensional(term.coefficient, term.power)).collect();
         // of these tables the nodes alone are used here
         let tables = Tables::get(Structure::Beam, nodes);
-        let mut kernel = Kernel { terms, tables, weights: [Weights::EMPTY; 3] };
+        let mut kernel = Kernel { terms, tables, weights: Default::default() };
         kernel.weights = [Kind::Start, Kind::Middle, Kind::End].map(|kind| kernel.weights_of(kind));
         kernel
+    }
+
+    /// Adds the later effect of an impulse on compression and rate at times after its `age` to their sums.
+    pub fn add_values(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
+        let Impulse { age, weight } = impulse;
+        let sums = memory.iter_mut().zip(slope.iter_mut()).zip(after);
+        if let [(c, 0.5)] = *self.terms {
+            // without a branch, for the vector units
+            for ((memory, slope), tau) in sums {
+                let t = age + tau;
+                let value = weight * (c * t.sqrt());
+                *memory += value;
+                *slope += 0.5 * value / t;
+            }
+            return;
+        }
+        for ((memory, slope), tau) in sums {
+            let (value, rate) = self.values(age + tau);
+            *memory += weight * value;
+            *slope += weight * rate;
+        }
     }
 
     /// `kappa(t)` and its slope.
@@ -102,21 +125,32 @@ impl Kernel {
     }
 
     fn weights_of(&self, kind: Kind) -> Weights {
-        let of = |power: f64| product_weights(self.tables, kind, power);
+        let of = |power: f64| cached_weights(self.tables, kind, power);
         let memory = |&(_, power): &(f64, f64)| {
-            let slope = if power > 0.0 { of(power - 1.0) } else { Vec::new() };
+            let slope = if power > 0.0 { of(power - 1.0) } else { Arc::default() };
             (of(power), slope)
         };
         Weights { linear: of(1.0), impulse: of(0.0), memory: self.terms.iter().map(memory).collect() }
     }
 }
 
-impl Weights {
-    const EMPTY: Weights = Weights { linear: Vec::new(), impulse: Vec::new(), memory: Vec::new() };
-}
-
 fn add_row(sums: &mut [f64], factor: f64, row: &[f64]) {
     sums.iter_mut().zip(row).for_each(|(sum, w)| *sum += factor * w);
+}
+
+/// Powers whose weights are computed once in a program: those of the body, of a beam and of a plate.
+const CACHED: [f64; 4] = [1.0, 0.0, 0.5, -0.5];
+
+/// [`product_weights`], kept for the powers in [`CACHED`]. There is no bound on the number of other powers.
+fn cached_weights(tables: &Tables, kind: Kind, power: f64) -> Arc<[f64]> {
+    type Cells = [[OnceLock<Arc<[f64]>>; 3]; CACHED.len()];
+    static CELLS: [Cells; *NODES.end() + 1] =
+        [const { [const { [const { OnceLock::new() }; 3] }; CACHED.len()] }; *NODES.end() + 1];
+    let fresh = || product_weights(tables, kind, power).into();
+    match CACHED.iter().position(|&cached| cached == power) {
+        Some(which) => CELLS[tables.p][which][kind as usize].get_or_init(fresh).clone(),
+        None => fresh(),
+    }
 }
 
 /// Weights of `int_0^(t_i) (t_i - s)^power f ds` for nodal values of `f` on a panel of length 1.

@@ -1,9 +1,9 @@
 //! Later effects of past forces: panels as impulses, and the free motion after impulses.
 
 use super::kernel::Kernel;
+use crate::infinite::free::Free;
 use crate::infinite::history::{History, Impulse};
 use crate::infinite::rule::{Kind, Tables, series};
-use std::sync::Arc;
 
 /// The force on a panel that is solved.
 #[derive(Debug, Clone)]
@@ -56,31 +56,60 @@ impl Solved {
 /// As `0 <= p < 1`, every term of the bend is positive and convex.
 #[derive(Debug, Clone)]
 pub(in crate::infinite) struct FreeMotion {
-    /// Coefficients and powers of the kernel, those that bend.
-    terms: Arc<[(f64, f64)]>,
-    impulses: Vec<Impulse>,
+    terms: Vec<Bend>,
+}
+
+/// What one term of the kernel, one that bends, makes of the impulses.
+#[derive(Debug, Clone)]
+enum Bend {
+    /// Of a beam: the coefficient, and the impulses.
+    Root(f64, Free),
+    /// The power, then ages and `w c age^p`.
+    Power(f64, Vec<(f64, f64)>),
 }
 
 impl FreeMotion {
     pub fn new(kernel: &Kernel, history: &History) -> FreeMotion {
-        let terms: Arc<[(f64, f64)]> = kernel.terms.iter().copied().filter(|term| term.1 > 0.0).collect();
         // a term with power 0 does not contribute
-        let impulses = if terms.is_empty() { Vec::new() } else { history.impulses().collect() };
-        FreeMotion { terms, impulses }
+        let bends = kernel.terms.iter().filter(|term| term.1 > 0.0);
+        let terms = bends.map(|&(c, power)| {
+            if power == 0.5 {
+                return Bend::Root(c, Free::new(history, 1.0, 1.0));
+            }
+            let size = |impulse: Impulse| (impulse.age, impulse.weight * c * impulse.age.powf(power));
+            Bend::Power(power, history.impulses().map(size).collect())
+        });
+        FreeMotion { terms: terms.collect() }
     }
 
     /// The bend and its rate.
     pub fn bend(&self, tau: f64) -> (f64, f64) {
         let mut sums = (0.0, 0.0);
-        for impulse in &self.impulses {
-            let y = tau / impulse.age;
-            for &(c, p) in self.terms.iter() {
-                let size = impulse.weight * c * impulse.age.powf(p);
-                sums.0 += size * excess(p, y);
-                sums.1 += size * p / impulse.age * -((p - 1.0) * y.ln_1p()).exp_m1();
+        for term in &self.terms {
+            match term {
+                Bend::Root(c, free) => {
+                    sums.0 += c * (tau * tau * free.bend(tau));
+                    sums.1 += c * free.rate_gain(tau);
+                }
+                Bend::Power(power, impulses) => {
+                    for (age, size) in impulses {
+                        let y = tau / age;
+                        sums.0 += size * excess(*power, y);
+                        sums.1 += size * power / age * -((power - 1.0) * y.ln_1p()).exp_m1();
+                    }
+                }
             }
         }
         sums
+    }
+
+    /// Speed of the struck point at the origin of time.
+    pub fn structure_speed(&self) -> f64 {
+        let speed = |term: &Bend| match term {
+            Bend::Root(c, free) => c * free.structure_speed(),
+            Bend::Power(power, impulses) => impulses.iter().map(|(age, size)| power * size / age).sum(),
+        };
+        self.terms.iter().map(speed).sum()
     }
 }
 
@@ -102,6 +131,8 @@ fn excess(p: f64, y: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::infinite::problem::Structure;
+    use crate::infinite::receptance::{Receptance, Scale, Term};
+    use crate::modal::Striker;
 
     #[test]
     fn excess_joins() {
@@ -109,6 +140,28 @@ mod tests {
             let (a, b) = (excess(p, 0.1), excess(p, 0.1 * (1.0 + 1e-12)));
             assert!((a / b - 1.0).abs() < 1e-11, "{p}: {a} {b}");
             assert!((excess(p, 1e-8) / (0.5 * p * (1.0 - p) * 1e-16) - 1.0).abs() < 1e-7);
+        }
+    }
+
+    /// The motion after impulses on a beam, which has sums of its own, lies between those of two neighbouring powers.
+    #[test]
+    fn a_square_root_bends_like_its_neighbours() {
+        let mut history = History::default();
+        history.push(vec![Impulse { age: 0.3, weight: 2.0 }, Impulse { age: 7.0, weight: 0.5 }], 0.3, 7.0);
+        let motion = |power: f64| {
+            let structure = Receptance::new(&[Term { coefficient: 1.5, power }]).unwrap();
+            let striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
+            let scale = Scale { time_s: 1.0, ..structure.scale(&striker).unwrap() };
+            FreeMotion::new(&Kernel::new(&structure, &scale, 8), &history)
+        };
+        let (root, below, above) = (motion(0.5), motion(0.5 - 1e-5), motion(0.5 + 1e-5));
+        let near =
+            |exact: f64, a: f64, b: f64| assert!((0.5 * (a + b) - exact).abs() <= 1e-7 * exact, "{exact} {a} {b}");
+        near(root.structure_speed(), below.structure_speed(), above.structure_speed());
+        for tau in [0.0, 1e-6, 1e-3, 0.1, 1.0, 40.0, 1e4] {
+            let (exact, a, b) = (root.bend(tau), below.bend(tau), above.bend(tau));
+            near(exact.0, a.0, b.0);
+            near(exact.1, a.1, b.1);
         }
     }
 

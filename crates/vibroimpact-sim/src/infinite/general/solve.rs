@@ -13,7 +13,7 @@ use crate::modal::Striker;
 use contact_models::{ContactLaw, Memory};
 use invalid_input::InvalidInput;
 
-/// Closing speeds below this part of that of the impact are rounding.
+/// Closing speeds up to this part of that of the impact are rounding, where the speed of the striker is one minus all impulses.
 const SLOWEST: f64 = 1e-14;
 
 /// Solves the impact of a striker on an infinite structure with any contact law. The solution is in the units of
@@ -101,7 +101,9 @@ fn run(receptance: &Receptance, law: &Scaled<'_>, settings: &Settings) -> Soluti
             solution.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
             return solution;
         }
-        let rounding = next.is_some_and(|(_, closing)| closing.is_nan() || closing < SLOWEST);
+        // without a velocity that follows the force at once, and without an indentation that stays, slow contacts keep their digits
+        let slowest = if kernel.instant() == 0.0 && memory.touch_m == 0.0 { 0.0 } else { SLOWEST };
+        let rounding = next.is_some_and(|(_, closing)| closing.is_nan() || closing <= slowest);
         let Some((time, closing)) = solution.go_on(next, rounding, settings) else { return solution };
         body_travel += body * time;
         history = past;
