@@ -4,9 +4,18 @@ use crate::error::FitError;
 use crate::objective::Objective;
 use crate::parameter::Parameter;
 use crate::problem::{Fit, Method, Outcome, Problem, Settings, Start};
-use crate::random::halton;
+use crate::random::{Random, halton};
 use crate::report::Residuals;
 use crate::{gradient_method, simplex};
+
+/// One in so many candidates is a point of the sequence; the others are drawn around the best.
+const SHARE_OF_SEQUENCE: usize = 4;
+/// Stages of these draws, the number of draws around each point, and the factor of their spread from stage to stage.
+const STAGES: usize = 10;
+const DRAWS_AROUND_EACH: usize = 4;
+const SHRINKAGE: f64 = 0.6;
+/// Seed of these draws.
+const SEED: u64 = 5;
 
 /// Fits the parameters. The same input gives the same result to the last bit.
 ///
@@ -96,19 +105,59 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     })
 }
 
-/// The starting point of the parameters, then points of the sequence: the first ones, or those of the candidates with the
-/// smallest sum.
+/// The starting point of the parameters, then points of the sequence: the first ones, or the most promising candidates.
 fn starting_points(objective: &Objective, settings: &Settings, buffer: &mut [f64]) -> Vec<Vec<f64>> {
-    let point = |index| starting_point(objective.problem, index);
     let more = settings.starts - 1;
     if settings.candidates <= more {
-        return (0..settings.starts).map(point).collect();
+        return (0..settings.starts).map(|index| starting_point(objective.problem, index)).collect();
     }
-    let mut candidates: Vec<(f64, Vec<f64>)> =
-        (1..=settings.candidates).map(point).map(|u| (objective.sum_of_squares(&u, buffer), u)).collect();
-    // The sort is stable: among equal candidates the first of the sequence is used.
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    std::iter::once(point(0)).chain(candidates.into_iter().take(more).map(|(_, u)| u)).collect()
+    let own = starting_point(objective.problem, 0);
+    std::iter::once(own).chain(promising(objective, settings.candidates, more, buffer)).collect()
+}
+
+/// The `more` best of some candidates that are apart from each other. A quarter of the candidates are points of the sequence. The
+/// others are drawn in stages around the best so far, with a spread that shrinks from stage to stage: where the sum of squares
+/// has many minima, those near the least are mostly low themselves, and points of the sequence alone are too far apart.
+fn promising(objective: &Objective, candidates: usize, more: usize, buffer: &mut [f64]) -> Vec<Vec<f64>> {
+    let parameters = &objective.problem.parameters;
+    let widths: Vec<f64> = parameters.iter().map(|p| p.inward(p.search.1) - p.inward(p.search.0)).collect();
+    let first = (candidates / SHARE_OF_SEQUENCE).max(more);
+    let mut tried = |u: Vec<f64>| (objective.sum_of_squares(&u, buffer), u);
+    let mut found: Vec<(f64, Vec<f64>)> =
+        (1..=first).map(|index| tried(starting_point(objective.problem, index))).collect();
+    let drawn = candidates - first;
+    let mut random = Random::new(SEED);
+    // the distance between points of the sequence, as a share of each interval
+    let mut spread = (first as f64).powf(-1.0 / widths.len() as f64);
+    for stage in 0..STAGES {
+        let count = drawn * (stage + 1) / STAGES - drawn * stage / STAGES;
+        let around = apart(&mut found, count.div_ceil(DRAWS_AROUND_EACH), spread, &widths);
+        let draws = around.iter().cycle().take(count).map(|centre| {
+            centre.iter().zip(&widths).map(|(u, width)| u + spread * width * random.normal()).collect::<Vec<f64>>()
+        });
+        let draws: Vec<_> = draws.map(&mut tried).collect();
+        found.extend(draws);
+        spread *= SHRINKAGE;
+    }
+    apart(&mut found, more, spread, &widths)
+}
+
+/// The best `count` points, of which none is within half the `spread` of a better one in all coordinates, as far as there are so
+/// many; then the best of the others. Sorts the points.
+fn apart(found: &mut [(f64, Vec<f64>)], count: usize, spread: f64, widths: &[f64]) -> Vec<Vec<f64>> {
+    // the sort is stable: among equal points the first is used
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut chosen, mut others): (Vec<&Vec<f64>>, Vec<&Vec<f64>>) = (Vec::new(), Vec::new());
+    for (_, u) in found.iter() {
+        if chosen.len() == count {
+            break;
+        }
+        let near = |better: &&Vec<f64>| {
+            better.iter().zip(u).zip(widths).all(|((a, b), width)| (a - b).abs() <= 0.5 * spread * width)
+        };
+        if chosen.iter().any(near) { others.push(u) } else { chosen.push(u) }
+    }
+    chosen.into_iter().chain(others).take(count).cloned().collect()
 }
 
 /// The starting point of the parameters, then Halton's points over the search intervals.

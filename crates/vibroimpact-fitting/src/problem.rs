@@ -63,9 +63,10 @@ pub struct Settings {
     /// Number of starting points: the parameters' own, then a Halton sequence over their search intervals (in the
     /// transformed coordinates). Default 8.
     pub starts: usize,
-    /// Number of points of the sequence at which the sum of squares is evaluated to choose as starting points those where it is
-    /// smallest. Default 0: the first points of the sequence are used. More is useful if an evaluation costs little compared
-    /// with a search and the sum of squares has many minima.
+    /// Number of points at which the sum of squares is evaluated to choose as starting points the best that are apart from each
+    /// other. A quarter of them are points of the sequence, the others are drawn around the best so far, in stages with a
+    /// shrinking spread. Default 0: the first points of the sequence are used. More is useful if an evaluation costs little
+    /// compared with a search and the sum of squares has many minima.
     pub candidates: usize,
     /// Relative change of the sum of squares and of the parameters at which a search ends, from 1e-15 to 0.1. Default 1e-10.
     /// The search from each start ends at 1e-5 already, and the best one is continued.

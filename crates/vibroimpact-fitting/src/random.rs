@@ -21,6 +21,14 @@ impl Random {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
     }
 
+    /// A standard normal deviate by the method of Box and Muller.
+    pub(crate) fn normal(&mut self) -> f64 {
+        // from 0 up to, but without, 1
+        let mut share = || (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        let (radius, angle) = ((-2.0 * (1.0 - share()).ln()).sqrt(), std::f64::consts::TAU * share());
+        radius * angle.cos()
+    }
+
     /// A shuffle by the method of Fisher and Yates.
     pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {

@@ -266,6 +266,34 @@ fn a_profile_of_one_parameter_or_from_a_point_that_is_no_minimum_is_found() {
     assert!((found.high.unwrap() - 6.6056).abs() < 0.03, "{:?}", found.high);
 }
 
+/// Eight directions, in each of which the residual vanishes at many places, but all vanish together only once. None of the
+/// twelve is found if all candidates are points of the sequence.
+#[test]
+fn candidates_find_the_least_of_many_minima() {
+    for truth in [[1.234, -2.345], [-6.1, 3.3], [0.7, 8.2], [-3.9, -7.7]] {
+        for (height, per_length) in [(1.0, 20.0), (2.0, 25.0), (1.0, 40.0)] {
+            let residuals = |p: &[f64], r: &mut [f64]| {
+                for (k, r) in r.iter_mut().enumerate() {
+                    let (sin, cos) = (0.4 * k as f64).sin_cos();
+                    let along = cos * (p[0] - truth[0]) + sin * (p[1] - truth[1]);
+                    *r = 10.0 * along + height * (per_length * along).sin();
+                }
+            };
+            let problem = Problem {
+                parameters: vec![Parameter::free("a", 0.0, (-10.0, 10.0)), Parameter::free("b", 0.0, (-10.0, 10.0))],
+                count: 8,
+                residuals: &residuals,
+                jacobian: None,
+            };
+            let method = Method::LevenbergMarquardt;
+            let found =
+                fit(&problem, &Settings { method, starts: 16, candidates: 960, ..Settings::default() }).unwrap();
+            assert_eq!(found.starts.len(), 16);
+            assert!(found.sum_of_squares < 1e-9, "{truth:?}, {height}, {per_length}: {:?}", found.parameters);
+        }
+    }
+}
+
 #[test]
 fn intervals_cover_as_often_as_stated() {
     // For a straight line, 20 points and uniform errors, 95 % intervals should contain the slope in about 95 of 100 cases.

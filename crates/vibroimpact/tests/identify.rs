@@ -336,13 +336,15 @@ fn many_minima_are_searched_and_reported() {
     fs::write(folder.path().join("data.csv"), text).unwrap();
     fs::write(folder.path().join("next.csv"), "location,striker.speed_m_s\ntip,8\nmiddle,0.2\nquarter,8\n").unwrap();
     let command = |starts: &str, more: &[&str]| {
-        let arguments = ["identify", "data.csv", "--scene", "scene.json", "--free", FREE, "--starts", starts];
+        // quiet, since a slow machine would report the progress
+        let arguments =
+            ["--quiet", "identify", "data.csv", "--scene", "scene.json", "--free", FREE, "--starts", starts];
         stdout(&run(folder.path(), &[&arguments[..], more].concat())).split_whitespace().collect::<Vec<_>>().join(" ")
     };
     for said in ["THE MODEL DOES NOT FIT, or the search has missed the least sum", "from one starting point: the sum"] {
         assert!(command("1", &[]).contains(said));
     }
-    assert!(command("4", &[]).contains("1 of 4 starting points leads to the least robust sum: there are other minima"));
+    assert!(command("4", &[]).contains("3 of 4 starting points lead to the least robust sum: there are other minima"));
     let options = ["--free", FREE, "--starts", "4", "--candidates", "next.csv"];
     let found = in_folder(folder.path(), &options);
     assert!((value(&found, 0) / 1.2e9 - 1.0).abs() < 1e-6 && (value(&found, 1) / 0.5 - 1.0).abs() < 1e-6);

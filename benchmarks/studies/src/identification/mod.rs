@@ -72,7 +72,7 @@ fn told(kind: Kind, rows: &[Row]) -> String {
             share(sum(|row| row.by_profile), parameters),
         ),
         Kind::WrongLaw | Kind::WrongDamping => format!("{kind:?}: {} tables; noticed {noticed}\n", rows.len()),
-        Kind::Rough | Kind::RoughPeak | Kind::Smooth => {
+        Kind::Rough | Kind::RoughPeak | Kind::Smooth | Kind::Chaotic => {
             let of = |all: fn(&Row) -> &[bool], k: usize| {
                 share(rows.iter().filter(|row| all(row).get(k) == Some(&true)).count(), rows.len())
             };

@@ -45,6 +45,8 @@ pub enum Kind {
     /// Fitted with the wrong law, or with the wrong damping.
     WrongLaw,
     WrongDamping,
+    /// Every impact has several contacts: the restitution and the peak force of the first contact on the beam of chapter 3.
+    Chaotic,
     /// Many contacts at the tip: the restitution alone, the restitution and the peak force of the first contact, and both without
     /// the locations that have many contacts.
     Rough,
@@ -54,12 +56,20 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in the order of the summary.
-    pub const ALL: [Kind; 7] =
-        [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak, Kind::Smooth];
+    pub const ALL: [Kind; 8] = [
+        Kind::Stated,
+        Kind::Estimated,
+        Kind::WrongLaw,
+        Kind::WrongDamping,
+        Kind::Rough,
+        Kind::RoughPeak,
+        Kind::Smooth,
+        Kind::Chaotic,
+    ];
 
     /// Whether its impacts have many contacts.
     pub fn is_rough(self) -> bool {
-        matches!(self, Kind::Rough | Kind::RoughPeak | Kind::Smooth)
+        matches!(self, Kind::Rough | Kind::RoughPeak | Kind::Smooth | Kind::Chaotic)
     }
 }
 
@@ -101,21 +111,74 @@ fn holds([low, high]: [Option<f64>; 2], truth: f64) -> bool {
     low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high)
 }
 
-/// A cantilever with locations up to its tip, where impacts have many contacts, and a poor initial guess.
+/// Impacts of which many have several contacts.
+struct Impacts {
+    scene: Value,
+    free: [&'static str; 2],
+    truth: [f64; 2],
+    /// Locations and speeds.
+    at: Vec<(f64, f64)>,
+}
+
+impl Impacts {
+    /// On a cantilever, at locations up to its tip or without the two next to it.
+    fn on_cantilever(count: usize, random: &mut Random) -> Impacts {
+        Impacts {
+            scene: json!({
+                "structure": { "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
+                    "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+                "striker": { "mass_kg": 0.06, "speed_m_s": 1 },
+                "contact": { "law": "hertz", "stiffness_n_m1_5": 2e9 },
+                "location_m": 0.9, "modes": 20, "residual_compliance": true
+            }),
+            free: FREE,
+            truth: [2e9 * factor(random, 2.0), 0.06 * factor(random, 1.2)],
+            at: PLACES[..count].iter().map(|place| (*place, 1.0)).collect(),
+        }
+    }
+
+    /// On the beam of chapter 3, with three to nine contacts each.
+    fn of_chapter_3(random: &mut Random) -> Impacts {
+        let side_m = 0.011323;
+        Impacts {
+            scene: json!({
+                "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+                    "segments": [{ "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+                        "width_m": side_m, "thickness_m": side_m }] },
+                "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
+                "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+                "location_m": 0.4, "modes": 40, "residual_compliance": true
+            }),
+            free: ["contact.youngs_modulus_pa", "structure.damping_ratio"],
+            truth: [2e11 * factor(random, 1.6), 0.015 * factor(random, 2.0)],
+            at: [0.15, 0.23, 0.31, 0.39, 0.47]
+                .into_iter()
+                .flat_map(|place| [0.5, 1.0, 2.0].map(|v| (place, v)))
+                .collect(),
+        }
+    }
+
+    fn scene(&self, values: [f64; 2]) -> Result<Value, Failure> {
+        let mut tree = self.scene.clone();
+        for (field, value) in self.free.iter().zip(values) {
+            let pointer = format!("/{}", field.replace('.', "/"));
+            *tree.pointer_mut(&pointer).ok_or("no such field")? = json!(value);
+        }
+        Ok(tree)
+    }
+}
+
+/// Fits impacts with many contacts from a poor initial guess.
 fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
-    let truth = [2e9 * factor(random, 2.0), 0.06 * factor(random, 1.2)];
-    let beam = |stiffness: f64, mass: f64| {
-        json!({
-            "structure": { "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
-                "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
-            "striker": { "mass_kg": mass, "speed_m_s": 1 },
-            "contact": { "law": "hertz", "stiffness_n_m1_5": stiffness },
-            "location_m": 0.9, "modes": 20, "residual_compliance": true
-        })
+    let (impacts, wrong) = match row.kind {
+        Kind::Chaotic => (Impacts::of_chapter_3(random), [1.8, 0.6]),
+        Kind::Smooth => (Impacts::on_cantilever(SINGLE, random), [1.8, 1.3]),
+        _ => (Impacts::on_cantilever(PLACES.len(), random), [1.8, 1.3]),
     };
+    let truth = impacts.truth;
     let with_peak = row.kind != Kind::Rough;
     let peak_columns = if with_peak { ",first_peak_force_n,first_peak_force_n_sd" } else { "" };
-    let mut text = format!("location_m,restitution,restitution_sd{peak_columns}\n");
+    let mut text = format!("location_m,striker.speed_m_s,restitution,restitution_sd{peak_columns}\n");
     // the sum of squares for the true parameters
     let mut of_truth = 0.0;
     let mut noise = |sd: f64| {
@@ -123,13 +186,13 @@ fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
         of_truth += normal * normal;
         sd * normal
     };
-    let count = if row.kind == Kind::Smooth { SINGLE } else { PLACES.len() };
-    for place in &PLACES[..count] {
-        let mut tree = beam(truth[0], truth[1]);
+    for (place, speed) in &impacts.at {
+        let mut tree = impacts.scene(truth)?;
         tree["location_m"] = json!(place);
+        tree["striker"]["speed_m_s"] = json!(speed);
         let found = Scene::from_value(&tree)?.impact()?.solve()?;
         let e = found.restitution.ok_or("no rebound")? + noise(NOISE[0]);
-        text += &format!("{place:?},{e:?},{:?}", NOISE[0]);
+        text += &format!("{place:?},{speed:?},{e:?},{:?}", NOISE[0]);
         if with_peak {
             let peak = found.sub_impacts.first().ok_or("no contact")?.peak_force_n;
             let sd = PEAK_NOISE * peak;
@@ -138,9 +201,9 @@ fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
         text += "\n";
     }
     let data = parsed(&text)?;
-    let guess = beam(truth[0] * 1.8, truth[1] * 1.3);
+    let guess = impacts.scene(std::array::from_fn(|j| truth[j] * wrong[j]))?;
     for starts in STARTS {
-        let found = fitted(&guess, &data, &FREE, starts)?;
+        let found = fitted(&guess, &data, &impacts.free, starts)?;
         let beside = || found.parameters.iter().zip(truth);
         row.fits.push(found.sum_of_squares <= of_truth);
         row.near.push(beside().all(|(parameter, truth)| (parameter.value / truth - 1.0).abs() < NEAR));

@@ -25,10 +25,11 @@
 //! **One model.** The number of modes is chosen once, at the starting values, as the largest number that a row of the table needs.
 //! It is then fixed, because `S` would jump if the number depended on the parameters.
 //!
-//! **Many minima.** Where contacts split or join, predictions jump, and `S` has many minima. The search ranks quasi-random points
-//! by
-//! `sum ln(1 + r_i^2)`, in which rows that jump count little (Cauchy's likelihood). It continues from the best points with the
-//! same sum, and ends with Eq. (1).
+//! **Many minima.** Where contacts split or join, predictions jump, and `S` has many minima. The search ranks points by
+//! `sum ln(1 + r_i^2)`, in which rows that jump count little (Cauchy's likelihood). A quarter of the points are quasi-random over
+//! the intervals of the search; the others are drawn around the best so far, in ten stages with a shrinking spread
+//! ([`fitting::Settings::candidates`]). The search continues from the best points that are apart from each other with the same
+//! sum, and ends with Eq. (1) from the best four minima.
 //!
 //! **Intervals.** With `M = J^T J` the interval of a parameter is `u +- z sqrt((M^-1)_jj)`, and by the likelihood
 //! profile `S_j(u) <= S + z^2` ([`fitting::profile`]), which also holds if `S` is not quadratic. The quantile `z` is the normal one

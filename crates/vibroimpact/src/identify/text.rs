@@ -89,9 +89,10 @@ fn agreeing(found: &Identification) -> usize {
     found.starts.iter().filter(|start| near(start.robust_sum)).count()
 }
 
-/// Whether most of the starting points lead elsewhere: the sum then has many minima, and the least may be missed.
+/// Whether a starting point leads elsewhere: the sum then has several minima, and the least may be missed. (Most starting points
+/// are near the best ones, so that many of them may agree.)
 fn is_rough(found: &Identification) -> bool {
-    2 * agreeing(found) < found.starts.len()
+    agreeing(found) < found.starts.len()
 }
 
 fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {

@@ -17,6 +17,10 @@ const TOLERANCE: f64 = 1e-8;
 const MOST_EVALUATIONS: usize = 400;
 /// Number of evaluated points for each starting point of the search.
 const CANDIDATES_PER_START: usize = 64;
+/// Number of minima of the robust sum from which the sum of squares is minimised, and the distance, in the transformed coordinates,
+/// within which two ends are one minimum.
+const MOST_MINIMA: usize = 4;
+const SAME_MINIMUM: f64 = 1e-3;
 /// Largest distance of a parameter from its start, in its transformed coordinate: a factor of 20,000.
 const FURTHEST: f64 = 10.0;
 /// Rounds of fit and estimate of the noise, and the relative change at which they agree.
@@ -204,19 +208,31 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// The starting points, and the parameters to which the best of them leads, by the robust sum.
-    fn scout(&self, starts: usize) -> Option<(Vec<Start>, Vec<f64>)> {
+    /// The starting points, and the best minima of the robust sum to which they lead.
+    fn scout(&self, starts: usize) -> Option<(Vec<Start>, Vec<Vec<f64>>)> {
         let settings = Settings { starts, candidates: CANDIDATES_PER_START * (starts - 1), ..settings() };
         let found = self.with_problem(Loss::Robust, &self.parameters, |problem| fit(problem, &settings)).ok()?;
-        Some((found.starts, found.parameters))
+        let mut ends: Vec<&Start> = found.starts.iter().filter(|start| start.sum_of_squares.is_finite()).collect();
+        ends.sort_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
+        let mut minima = vec![found.parameters.clone()];
+        for end in ends {
+            let inward = |of: &[f64], j: usize| self.coordinates[j].inward(of[j]);
+            let same = |other: &Vec<f64>| {
+                (0..other.len()).all(|j| (inward(other, j) - inward(&end.parameters, j)).abs() < SAME_MINIMUM)
+            };
+            if minima.len() < MOST_MINIMA && !minima.iter().any(same) {
+                minima.push(end.parameters.clone());
+            }
+        }
+        Some((found.starts, minima))
     }
 
-    /// Fits from the end of the robust search and from the present parameters, and estimates the noise if it is not stated. Returns
+    /// Fits from the best minima of the robust search and from the present parameters, and estimates the noise if it is not stated. Returns
     /// the starts, and whether the search converged.
     pub fn search(&mut self, starts: usize) -> Result<(Vec<Start>, bool), InvalidInput> {
         let (told, scouted) = if starts > 1 { self.scout(starts) } else { None }.unzip();
         let mut begin = vec![self.parameters.clone()];
-        begin.extend(scouted);
+        begin.extend(scouted.into_iter().flatten());
         let mut agreed = false;
         let mut outcome = Outcome::Converged;
         for _ in 0..MOST_ROUNDS {
