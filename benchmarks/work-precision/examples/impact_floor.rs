@@ -10,7 +10,9 @@ use work_precision::impact::{library, reference};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [name, tolerance, rest @ ..] = words.as_slice() else { return Err("usage: NAME TOLERANCE [RUNS] [anew]".into()) };
+    let [name, tolerance, rest @ ..] = words.as_slice() else {
+        return Err("usage: NAME TOLERANCE [RUNS] [anew]".into());
+    };
     let runs: usize = rest.first().map_or(Ok(100), |runs| runs.parse())?;
     let anew = rest.iter().any(|word| word == "anew");
     let impacts = library()?;
@@ -33,7 +35,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "{modes} modes, error {:.1e}, {} steps in contact, {} rejected, {} in flight, {} events, {} iterations; {} + {} thousand \
          floating-point operations; {:.1} us at best",
-        solution.restitution.map_or(f64::NAN, |e| (e - reference(impact.name).map_or(f64::NAN, |r| r.outcome.restitution)).abs()),
+        solution
+            .restitution
+            .map_or(f64::NAN, |e| (e - reference(impact.name).map_or(f64::NAN, |r| r.outcome.restitution)).abs()),
         counts.contact_steps,
         counts.rejected_steps,
         counts.flight_steps,
