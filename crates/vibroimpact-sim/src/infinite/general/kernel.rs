@@ -16,16 +16,19 @@ use std::sync::{Arc, OnceLock};
 /// Nodes of the rules for the weights.
 const POINTS: NonZeroUsize = NonZeroUsize::new(64).unwrap();
 
+/// A matrix, row by row.
+type Rows = Arc<[f64]>;
+
 /// Weights of nodal forces on one kind of panel: rows `0..p` belong to the nodes, row `p` to the end. Each is for a
 /// panel of length 1.
 #[derive(Debug, Default)]
 struct Weights {
     /// `int (t_i - s) f ds`.
-    linear: Arc<[f64]>,
+    linear: Rows,
     /// `int f ds`.
-    impulse: Arc<[f64]>,
+    impulse: Rows,
     /// `int (t_i - s)^p f ds` and, for `p > 0`, `int (t_i - s)^(p-1) f ds`, of each term.
-    memory: Vec<(Arc<[f64]>, Arc<[f64]>)>,
+    memory: Vec<(Rows, Rows)>,
 }
 
 /// `kappa(t) = sum_k c_k t^(p_k)` in the units of the impact, so that `kappa(1) = 1`.
@@ -142,8 +145,8 @@ fn add_row(sums: &mut [f64], factor: f64, row: &[f64]) {
 const CACHED: [f64; 4] = [1.0, 0.0, 0.5, -0.5];
 
 /// [`product_weights`], kept for the powers in [`CACHED`]. There is no bound on the number of other powers.
-fn cached_weights(tables: &Tables, kind: Kind, power: f64) -> Arc<[f64]> {
-    type Cells = [[OnceLock<Arc<[f64]>>; 3]; CACHED.len()];
+fn cached_weights(tables: &Tables, kind: Kind, power: f64) -> Rows {
+    type Cells = [[OnceLock<Rows>; 3]; CACHED.len()];
     static CELLS: [Cells; *NODES.end() + 1] =
         [const { [const { [const { OnceLock::new() }; 3] }; CACHED.len()] }; *NODES.end() + 1];
     let fresh = || product_weights(tables, kind, power).into();
