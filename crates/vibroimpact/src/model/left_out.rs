@@ -15,10 +15,9 @@
 //! most accidental agreements. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
 //! remainder modes; the number of modes within its spectrum is then larger by a factor of up to `R^(-1/2)`. A dashpot, whose force
 //! jumps at first touch, takes most of the energy of the remainder modes before the contact ends, and then `D = 10`, otherwise 1.
-//! `d_s`, for lists, is
-//! the change with a single remainder mode in place of several, because the extrapolation of a list is an assumption. `d_c` is the
-//! change if the static compliance, which all numbers of modes share, is larger by its uncertainty; it is zero if the compliance
-//! has a closed form.
+//! `d_s`, for lists, is the change with a single remainder mode in place of several, because the extrapolation of a list is an
+//! assumption. `d_c` is the change if the static compliance, which all numbers of modes share, is larger by its uncertainty; it is
+//! zero if the compliance has a closed form.
 //!
 //! If a list of modes ends before the restitution has converged, its last remainder modes are used beyond their range, and their
 //! energy is part of the motion. With the last three changes,
