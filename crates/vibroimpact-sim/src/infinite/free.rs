@@ -91,6 +91,29 @@ impl Free {
         })
     }
 
+    /// [`bend`](Self::bend) and [`rate_gain`](Self::rate_gain) with one root for both.
+    pub fn bend_and_gain(&self, tau: f64) -> (f64, f64) {
+        let (mut bends, mut gains) = ([0.0; 4], [0.0; 4]);
+        let mut add = |i: usize, age: f64, root: f64, c: f64| {
+            let now = (age + tau).sqrt();
+            let both = now + root;
+            let share = c / (now * both * both);
+            bends[i] += share * now;
+            gains[i] += share * both;
+        };
+        let (ages, roots, cs) = (self.age.chunks_exact(4), self.root.chunks_exact(4), self.c.chunks_exact(4));
+        for ((&age, &root), &c) in ages.remainder().iter().zip(roots.remainder()).zip(cs.remainder()) {
+            add(0, age, root, c);
+        }
+        for ((age, root), c) in ages.zip(roots).zip(cs) {
+            for i in 0..4 {
+                add(i, age[i], root[i], c[i]);
+            }
+        }
+        let sum = |parts: [f64; 4]| (parts[0] + parts[1]) + (parts[2] + parts[3]);
+        (sum(bends), tau * sum(gains))
+    }
+
     /// `x''(tau)`.
     pub fn acceleration(&self, tau: f64) -> f64 {
         self.sum(|age, root, c| 0.5 * c * root / ((age + tau) * (age + tau).sqrt()))

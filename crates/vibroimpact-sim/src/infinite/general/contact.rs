@@ -186,7 +186,7 @@ impl<'a> Contact<'a> {
         let mut h = 2.0_f64.powi(100);
         while h > 2.0_f64.powi(-200) {
             let force = self.law.force(&self.branch, self.level + closing * h, 0.0).force;
-            if force * (h + self.kernel.values(h).0) <= 0.5 * closing {
+            if force * (h + self.kernel.value(h)) <= 0.5 * closing {
                 break;
             }
             h *= 0.5;
@@ -206,13 +206,13 @@ impl<'a> Contact<'a> {
         let after: Vec<f64> = elapsed.iter().map(|e| h * e).collect();
         let (mut memory, mut slope) = (vec![0.0; after.len()], vec![0.0; after.len()]);
         for &impulse in &impulses {
-            self.kernel.add_values(impulse, &after, &mut memory, &mut slope);
+            self.kernel.add_after_effect(impulse, &after, &mut memory, &mut slope);
         }
         for ((tau, memory), slope) in after.iter().zip(&mut memory).zip(&mut slope) {
             let theta = self.now + tau;
             let (bend, gain) = self.before.bend(theta);
             let line = self.level + self.touch.closing * theta;
-            *memory = line + bend - (self.moment + self.impulse * tau) - *memory;
+            *memory = line + bend - (self.moment + self.impulse * (tau + self.kernel.instant())) - *memory;
             *slope = self.touch.closing + gain - self.impulse - *slope;
         }
         [memory, slope]
@@ -316,6 +316,9 @@ impl<'a> Contact<'a> {
         self.pieces.push(Piece { kind, start: self.now, h, x: nodal.x, force: Some(nodal.force), impulse, moment });
         self.now += h;
         (self.x, self.rate) = (x_end, rate_end);
+        if !self.kernel.has_after_effect() {
+            return;
+        }
         // the past moves back, and what is far enough joins the impulses
         self.since.advance(h);
         self.near.iter_mut().for_each(|panel| panel.behind += h);

@@ -4,7 +4,7 @@ use super::kernel::Matrices;
 use super::law::{Force, Scaled};
 use crate::infinite::rule::dot;
 use contact_models::Branch;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 40;
@@ -26,8 +26,8 @@ pub(super) enum Fault {
     Law,
 }
 
-/// Solves `f = law(x, x')` with `x = known_x - A f`, `x' = known_rate - B f`, from a guess in `nodal`, until the forces
-/// change by less than their rounding.
+/// Solves `f = law(x, x')` with `x = known_x - A f`, `x' = known_rate - B f`, from a guess of `x` and `x'` in `nodal`, until the
+/// forces change by less than their rounding. Close to the solution the factors of a matrix serve again.
 pub(super) fn solve(
     law: &Scaled<'_>,
     branch: &Branch,
@@ -36,30 +36,38 @@ pub(super) fn solve(
     mut nodal: Nodal,
 ) -> Result<Nodal, Fault> {
     let p = nodal.force.len();
-    let mut last = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
+    let (mut last, mut kept) = (f64::INFINITY, None::<LU<f64, Dyn, Dyn>>);
+    for step in 0..MOST_STEPS {
         let forces: Vec<Force> = (0..p).map(|i| law.force(branch, nodal.x[i], nodal.rate[i])).collect();
         nodal.stiffness = forces.iter().fold(0.0_f64, |largest, f| largest.max(f.stiffness.abs()));
         if forces.iter().any(|f| !(f.force.is_finite() && f.stiffness.is_finite() && f.damping.is_finite())) {
             return Err(Fault::Law);
         }
-        let jacobian = DMatrix::from_fn(p, p, |i, j| {
-            let delta = if i == j { 1.0 } else { 0.0 };
-            let at = i * p + j;
-            delta + forces[i].stiffness * matrices.compression[at] + forces[i].damping * matrices.rate[at]
+        let factors = kept.get_or_insert_with(|| {
+            let jacobian = DMatrix::from_fn(p, p, |i, j| {
+                let delta = if i == j { 1.0 } else { 0.0 };
+                let at = i * p + j;
+                delta + forces[i].stiffness * matrices.compression[at] + forces[i].damping * matrices.rate[at]
+            });
+            jacobian.lu()
         });
-        let right = DVector::from_fn(p, |i, _| {
-            forces[i].force
-                + forces[i].stiffness * (known[0][i] - nodal.x[i])
-                + forces[i].damping * (known[1][i] - nodal.rate[i])
+        // the guess need not be the motion under the forces before it
+        let mut change = DVector::from_fn(p, |i, _| {
+            let Force { force, stiffness, damping } = forces[i];
+            match step {
+                0 => force + stiffness * (known[0][i] - nodal.x[i]) + damping * (known[1][i] - nodal.rate[i]),
+                _ => force - nodal.force[i],
+            }
         });
-        let Some(force) = jacobian.lu().solve(&right) else { return Err(Fault::NotConverged) };
-        let largest = force.amax();
-        let change = force.iter().zip(&nodal.force).fold(0.0_f64, |change, (a, b)| change.max((a - b).abs()));
+        if !factors.solve_mut(&mut change) {
+            return Err(Fault::NotConverged);
+        }
+        nodal.force.iter_mut().zip(&change).for_each(|(force, change)| *force += change);
+        let largest = nodal.force.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+        let change = change.amax();
         if !(largest.is_finite() && change.is_finite()) {
             return Err(Fault::NotConverged);
         }
-        nodal.force.copy_from_slice(force.as_slice());
         for i in 0..=p {
             let row = i * p..(i + 1) * p;
             nodal.x[i] = known[0][i] - dot(&matrices.compression[row.clone()], &nodal.force);
@@ -68,6 +76,9 @@ pub(super) fn solve(
         // converged, or as far as rounding lets the steps shrink
         if change <= 1e-15 * largest || (change <= 1e-11 * largest && change > 0.1 * last) || largest == 0.0 {
             return Ok(nodal);
+        }
+        if !(change < 0.1 * largest && change < 0.2 * last) {
+            kept = None;
         }
         last = change;
     }

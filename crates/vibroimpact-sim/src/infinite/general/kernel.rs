@@ -61,36 +61,40 @@ impl Kernel {
         kernel
     }
 
-    /// Adds the later effect of an impulse on compression and rate at times after its `age` to their sums.
-    pub fn add_values(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
+    /// Whether the point moves on after an impulse: whether some power is above 0.
+    pub fn has_after_effect(&self) -> bool {
+        self.terms.iter().any(|term| term.1 > 0.0)
+    }
+
+    /// Adds what an impulse adds to compression and rate at times after its `age`, but for the displacement that it causes at once,
+    /// to their sums.
+    pub fn add_after_effect(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
         let Impulse { age, weight } = impulse;
-        let sums = memory.iter_mut().zip(slope.iter_mut()).zip(after);
-        if let [(c, 0.5)] = *self.terms {
-            // without a branch, for the vector units
+        for &(c, power) in self.terms.iter().filter(|term| term.1 > 0.0) {
+            let sums = memory.iter_mut().zip(slope.iter_mut()).zip(after);
+            if power == 0.5 {
+                // without a branch, for the vector units
+                for ((memory, slope), tau) in sums {
+                    let t = age + tau;
+                    let value = weight * (c * t.sqrt());
+                    *memory += value;
+                    *slope += 0.5 * value / t;
+                }
+                continue;
+            }
             for ((memory, slope), tau) in sums {
                 let t = age + tau;
-                let value = weight * (c * t.sqrt());
+                let value = weight * (c * t.powf(power));
                 *memory += value;
-                *slope += 0.5 * value / t;
+                *slope += power * value / t;
             }
-            return;
-        }
-        for ((memory, slope), tau) in sums {
-            let (value, rate) = self.values(age + tau);
-            *memory += weight * value;
-            *slope += weight * rate;
         }
     }
 
-    /// `kappa(t)` and its slope.
-    pub fn values(&self, t: f64) -> (f64, f64) {
-        self.terms.iter().fold((0.0, 0.0), |(value, slope), &(c, power)| {
-            if power == 0.0 {
-                return (value + c, slope);
-            }
-            let term = c * if power == 0.5 { t.sqrt() } else { t.powf(power) };
-            (value + term, slope + power * term / t)
-        })
+    /// `kappa(t)`.
+    pub fn value(&self, t: f64) -> f64 {
+        let term = |&(c, power): &(f64, f64)| c * if power == 0.5 { t.sqrt() } else { t.powf(power) };
+        self.terms.iter().map(term).sum()
     }
 
     /// The instantaneous part of the response: the velocity of the point under a unit force.
@@ -146,60 +150,74 @@ const CACHED: [f64; 4] = [1.0, 0.0, 0.5, -0.5];
 
 /// [`product_weights`], kept for the powers in [`CACHED`]. There is no bound on the number of other powers.
 fn cached_weights(tables: &Tables, kind: Kind, power: f64) -> Rows {
-    type Cells = [[OnceLock<Rows>; 3]; CACHED.len()];
-    static CELLS: [Cells; *NODES.end() + 1] =
-        [const { [const { [const { OnceLock::new() }; 3] }; CACHED.len()] }; *NODES.end() + 1];
-    let fresh = || product_weights(tables, kind, power).into();
+    type Cells = [[OnceLock<[Rows; CACHED.len()]>; 3]; *NODES.end() + 1];
+    static CELLS: Cells = [const { [const { OnceLock::new() }; 3] }; *NODES.end() + 1];
     match CACHED.iter().position(|&cached| cached == power) {
-        Some(which) => CELLS[tables.p][which][kind as usize].get_or_init(fresh).clone(),
-        None => fresh(),
+        Some(which) => {
+            CELLS[tables.p][kind as usize].get_or_init(|| product_weights(tables, kind, CACHED))[which].clone()
+        }
+        None => {
+            let [weights] = product_weights(tables, kind, [power]);
+            weights
+        }
     }
 }
 
-/// Weights of `int_0^(t_i) (t_i - s)^power f ds` for nodal values of `f` on a panel of length 1.
-fn product_weights(tables: &Tables, kind: Kind, power: f64) -> Vec<f64> {
+/// Weights of `int_0^(t_i) (t_i - s)^power f ds` for nodal values of `f` on a panel of length 1, for powers whose rules of
+/// [`jacobi`] have the same nodes: one power, or several for each of which `2 power + 1` is a natural number.
+fn product_weights<const N: usize>(tables: &Tables, kind: Kind, powers: [f64; N]) -> [Rows; N] {
     let p = tables.p;
-    let near = jacobi(2.0 * power + 1.0);
+    let near = powers.map(|power| jacobi(2.0 * power + 1.0));
     let plain = gauss(POINTS.get());
     let end = if kind == Kind::End { 0.0 } else { 1.0 };
-    let mut weights = Vec::with_capacity((p + 1) * p);
+    let mut weights: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity((p + 1) * p));
     for target in tables.sigma.iter().copied().chain([end]) {
-        let mut row = vec![0.0; p];
-        let mut add = |s: f64, w: f64| {
-            row.iter_mut().zip(legendre(2.0 * s - 1.0, p)).for_each(|(sum, value)| *sum += w * value);
+        let mut rows: [Vec<f64>; N] = std::array::from_fn(|_| vec![0.0; p]);
+        // the weight of a place, for each power
+        let mut add = |s: f64, weight: &dyn Fn(usize) -> f64| {
+            let values = legendre(2.0 * s - 1.0, p);
+            for (which, row) in rows.iter_mut().enumerate() {
+                add_row(row, weight(which), &values);
+            }
         };
+        let nodes = near[0].iter().map(|&(y, _)| y).enumerate();
         match kind {
             // s = target (1 - y^2)
-            Kind::Middle => {
-                near.iter().for_each(|&(y, w)| add(target * (1.0 - y * y), w * 2.0 * target.powf(power + 1.0)));
-            }
+            Kind::Middle => nodes.for_each(|(i, y)| {
+                add(target * (1.0 - y * y), &|n| near[n][i].1 * 2.0 * target.powf(powers[n] + 1.0));
+            }),
             // s = target cos(a), lag = target^2 sin(a)^2, a = y pi/2
-            Kind::Start => near.iter().for_each(|&(y, w)| {
+            Kind::Start => nodes.for_each(|(i, y)| {
                 let (sin, cos) = (FRAC_PI_2 * y).sin_cos();
-                let smooth = (sin / y).powf(2.0 * power + 1.0) * 2.0 * cos * FRAC_PI_2;
-                add(target * cos, w * smooth * target.powf(2.0 * power + 2.0));
+                let of = |n: usize| {
+                    let smooth = (sin / y).powf(2.0 * powers[n] + 1.0) * 2.0 * cos * FRAC_PI_2;
+                    near[n][i].1 * smooth * target.powf(2.0 * powers[n] + 2.0)
+                };
+                add(target * cos, &of);
             }),
             // the panel's end: lag = s^2
-            Kind::End if target == 0.0 => near.iter().for_each(|&(y, w)| add(y, 2.0 * w)),
+            Kind::End if target == 0.0 => nodes.for_each(|(i, y)| add(y, &|n| 2.0 * near[n][i].1)),
             // s = target cosh(a), lag = target^2 sinh(a)^2: the interval of a in pieces of length below 1
             Kind::End => {
                 let range = (1.0 / target).acosh();
                 let pieces = range.ceil().max(1.0);
                 let piece = range / pieces;
-                for &(y, w) in &near {
+                for (i, y) in nodes {
                     let (s, rise) = (target * (piece * y).cosh(), target * (piece * y).sinh());
-                    add(s, w * piece * (rise / y).powf(2.0 * power + 1.0) * 2.0 * s);
+                    add(s, &|n| near[n][i].1 * piece * (rise / y).powf(2.0 * powers[n] + 1.0) * 2.0 * s);
                 }
                 for (i, &(y, w)) in (1..pieces as usize).flat_map(|i| plain.iter().map(move |pair| (i, pair))) {
                     let a = piece * (i as f64 + y);
                     let (s, rise) = (target * a.cosh(), target * a.sinh());
-                    add(s, w * piece * rise.powf(2.0 * power + 1.0) * 2.0 * s);
+                    add(s, &|n| w * piece * rise.powf(2.0 * powers[n] + 1.0) * 2.0 * s);
                 }
             }
         }
-        weights.extend((0..p).map(|j| (0..p).map(|k| row[k] * tables.to_legendre[k * p + j]).sum::<f64>()));
+        for (weights, row) in weights.iter_mut().zip(&rows) {
+            weights.extend((0..p).map(|j| (0..p).map(|k| row[k] * tables.to_legendre[k * p + j]).sum::<f64>()));
+        }
     }
-    weights
+    weights.map(Rows::from)
 }
 
 /// Rule on `(0, 1)` for the weight `y^beta`, `beta > -1`.
@@ -231,7 +249,7 @@ mod tests {
                 // of weights whose sum is 1 / (power + 1) at most
                 let rounding = 4e-14 / (power + 1.0);
                 for (kind, exponent) in [(Kind::Middle, 1), (Kind::Middle, 2), (Kind::Start, 1), (Kind::Start, 2)] {
-                    let weights = product_weights(tables, kind, power);
+                    let [weights] = product_weights(tables, kind, [power]);
                     let elapsed = &tables.rule(kind).elapsed;
                     let f: Vec<f64> = elapsed[..nodes].iter().map(|t| t.powi(exponent)).collect();
                     for (row, &t) in weights.chunks_exact(nodes).zip(elapsed) {
@@ -241,7 +259,7 @@ mod tests {
                         assert!((dot(row, &f) - exact).abs() < rounding, "{kind:?} {power} {t}");
                     }
                 }
-                let weights = product_weights(tables, Kind::End, power);
+                let [weights] = product_weights(tables, Kind::End, [power]);
                 let rule = tables.rule(Kind::End);
                 let ones = vec![1.0; nodes];
                 let e: Vec<f64> = rule.remaining[..nodes].to_vec();

@@ -88,8 +88,9 @@ impl FreeMotion {
         for term in &self.terms {
             match term {
                 Bend::Root(c, free) => {
-                    sums.0 += c * (tau * tau * free.bend(tau));
-                    sums.1 += c * free.rate_gain(tau);
+                    let (bend, gain) = free.bend_and_gain(tau);
+                    sums.0 += c * (tau * tau * bend);
+                    sums.1 += c * gain;
                 }
                 Bend::Power(power, impulses) => {
                     for (age, size) in impulses {
