@@ -143,16 +143,18 @@ pub(super) fn elapsed(kind: Kind, s: f64) -> f64 {
 /// `int P_k(u) / sqrt(z - u) du = 2 sqrt(2 r) r^k / (2 k + 1)`; integration by parts then gives
 /// `int P_k sqrt(z - u) du = sqrt(2 r)/(2k+1) [r^(k+1)/(2k+3) - r^(k-1)/(2k-1)]` for `k > 0`.
 #[derive(Debug, Clone, Default)]
-struct RootSum {
+pub(super) struct RootSum {
     mean: f64,
     /// Coefficients of the powers of `r`.
     powers: Vec<f64>,
     /// Logarithm of what is negligible, relative to the largest of them.
     negligible: f64,
+    /// Coefficients of the powers of `r` in its derivative.
+    slopes: Vec<f64>,
 }
 
 impl RootSum {
-    fn new(coefficients: &[f64]) -> RootSum {
+    pub fn new(coefficients: &[f64]) -> RootSum {
         let mut powers = vec![0.0; coefficients.len() + 1];
         for ((k, c), (raised, lowered)) in coefficients.iter().enumerate().zip(ROOT_FACTORS).skip(1) {
             powers[k + 1] += c * raised;
@@ -160,11 +162,32 @@ impl RootSum {
         }
         let mean = coefficients[0];
         let largest = powers.iter().fold(0.0_f64, |a, c| a.max(c.abs()));
-        RootSum { mean, powers, negligible: (1e-18 * mean.abs() / largest).max(1e-300).ln() }
+        let slopes = coefficients.iter().enumerate().map(|(k, c)| c / (2 * k + 1) as f64).collect();
+        RootSum { mean, powers, negligible: (1e-18 * mean.abs() / largest).max(1e-300).ln(), slopes }
+    }
+
+    /// Adds `factor` times the derivative of the function at each `z = 1 + scale * beyond` to its sum.
+    pub fn add_slope(&self, factor: f64, scale: f64, beyond: &[f64], sums: &mut [f64]) {
+        for (beyond, sums) in beyond.chunks(LANES).zip(sums.chunks_mut(LANES)) {
+            let mut r = [0.0; LANES];
+            for (r, beyond) in r.iter_mut().zip(beyond) {
+                let y = scale * beyond;
+                *r = 1.0 / (1.0 + y + (y * (y + 2.0)).sqrt());
+            }
+            let mut series = [0.0; LANES];
+            for &c in self.slopes.iter().rev() {
+                for (series, r) in series.iter_mut().zip(r) {
+                    *series = *series * r + c;
+                }
+            }
+            for ((sum, series), r) in sums.iter_mut().zip(series).zip(r) {
+                *sum += factor * ((2.0 * r).sqrt() * series);
+            }
+        }
     }
 
     /// Adds `factor` times the function at each `z = 1 + scale * beyond` to its sum.
-    fn add(&self, factor: f64, scale: f64, beyond: &[f64], sums: &mut [f64]) {
+    pub fn add(&self, factor: f64, scale: f64, beyond: &[f64], sums: &mut [f64]) {
         for (beyond, sums) in beyond.chunks(LANES).zip(sums.chunks_mut(LANES)) {
             let mut y = [0.0; LANES];
             y.iter_mut().zip(beyond).for_each(|(y, beyond)| *y = scale * beyond);

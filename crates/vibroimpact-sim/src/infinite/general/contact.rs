@@ -12,7 +12,7 @@ use super::past::{FreeMotion, Solved};
 use crate::StopReason;
 use crate::infinite::contact::Turn;
 use crate::infinite::history::{History, Impulse};
-use crate::infinite::panel::turns;
+use crate::infinite::panel::{end_acceleration, turns, variable};
 use crate::infinite::piece::Piece;
 use crate::infinite::problem::Settings;
 use crate::infinite::rule::{Kind, dot, series, series_slope};
@@ -53,6 +53,16 @@ struct Trial {
     unresolved: f64,
 }
 
+/// The motion on the last panel that was solved, taken or not.
+struct Hint {
+    kind: Kind,
+    /// Time since touch at its start.
+    start: f64,
+    h: f64,
+    x_series: Vec<f64>,
+    rate_series: Vec<f64>,
+}
+
 /// The integration of one contact.
 pub(super) struct Contact<'a> {
     kernel: &'a Kernel,
@@ -78,6 +88,7 @@ pub(super) struct Contact<'a> {
     pub turns: Vec<Turn>,
     pub peak_force: f64,
     pub trials: usize,
+    hint: Option<Hint>,
 }
 
 impl<'a> Contact<'a> {
@@ -110,6 +121,7 @@ impl<'a> Contact<'a> {
             turns: Vec::new(),
             peak_force: 0.0,
             trials: 0,
+            hint: None,
         }
     }
 
@@ -150,7 +162,7 @@ impl<'a> Contact<'a> {
                 }
                 match self.law.cross(&self.branch, event.which, self.x, self.rate) {
                     After::Release(memory) => return Ending::Released(memory),
-                    After::Continue(branch) => self.branch = branch,
+                    After::Continue(branch) => (self.branch, self.hint) = (branch, None),
                 }
                 (kind, h) = (Kind::Start, length.max(0.1 * self.now).max(shortest));
                 continue;
@@ -200,13 +212,13 @@ impl<'a> Contact<'a> {
     fn known(&self, kind: Kind, h: f64) -> [Vec<f64>; 2] {
         let tables = self.kernel.tables;
         let elapsed = &tables.rule(kind).elapsed;
-        let gap = h * elapsed.iter().copied().fold(1.0, f64::min);
-        let near = self.near.iter().flat_map(|panel| panel.impulses(tables, panel.behind + gap));
-        let impulses: Vec<Impulse> = self.since.impulses().chain(near).collect();
         let after: Vec<f64> = elapsed.iter().map(|e| h * e).collect();
         let (mut memory, mut slope) = (vec![0.0; after.len()], vec![0.0; after.len()]);
-        for &impulse in &impulses {
+        for impulse in self.since.impulses() {
             self.kernel.add_after_effect(impulse, &after, &mut memory, &mut slope);
+        }
+        for panel in &self.near {
+            panel.add_after_effect(self.kernel, &after, &mut memory, &mut slope);
         }
         for ((tau, memory), slope) in after.iter().zip(&mut memory).zip(&mut slope) {
             let theta = self.now + tau;
@@ -218,19 +230,47 @@ impl<'a> Contact<'a> {
         [memory, slope]
     }
 
+    /// Compression and rate on a panel from now on, if the rate stayed as it is.
+    fn guess(&self, kind: Kind, h: f64) -> Nodal {
+        let elapsed = &self.kernel.tables.rule(kind).elapsed;
+        Nodal {
+            x: elapsed.iter().map(|e| self.x + self.rate * h * e).collect(),
+            rate: vec![self.rate; elapsed.len()],
+            force: vec![0.0; self.kernel.tables.p],
+            stiffness: 0.0,
+        }
+    }
+
+    /// The same as on a panel solved before, or with its last acceleration beyond it.
+    fn guess_from(&self, hint: &Hint, kind: Kind, h: f64) -> Nodal {
+        let mut nodal = self.guess(kind, h);
+        let (offset, scale) = ((self.now - hint.start) / hint.h, h / hint.h);
+        let elapsed = &self.kernel.tables.rule(kind).elapsed;
+        for ((x, rate), e) in nodal.x.iter_mut().zip(&mut nodal.rate).zip(elapsed) {
+            if offset < 0.5 {
+                let s = variable(hint.kind, offset + scale * e);
+                (*x, *rate) = (series(&hint.x_series, s), series(&hint.rate_series, s));
+            } else if hint.kind != Kind::End {
+                let moved = 0.5 * h * e * h * e * end_acceleration(hint.kind, hint.h, &hint.x_series);
+                *x += moved.clamp(-h * self.rate.abs(), h * self.rate.abs());
+            }
+        }
+        nodal
+    }
+
     /// Solves one panel from now on.
     fn attempt(&mut self, kind: Kind, h: f64) -> Result<Trial, Fault> {
         self.trials += 1;
         let tables = self.kernel.tables;
         let known = self.known(kind, h);
-        let elapsed = &tables.rule(kind).elapsed;
-        let guess = Nodal {
-            x: elapsed.iter().map(|e| self.x + self.rate * h * e).collect(),
-            rate: vec![self.rate; elapsed.len()],
-            force: vec![0.0; tables.p],
-            stiffness: 0.0,
+        let matrices = self.kernel.matrices(kind, h);
+        let solved = |guess| solve(self.law, &self.branch, &matrices, &known, guess);
+        let nodal = match self.hint.take().map(|hint| solved(self.guess_from(&hint, kind, h))) {
+            Some(Ok(nodal)) => nodal,
+            _ => solved(self.guess(kind, h))?,
         };
-        let nodal = solve(self.law, &self.branch, &self.kernel.matrices(kind, h), &known, guess)?;
+        let [x_series, rate_series] = [&nodal.x, &nodal.rate].map(|values| tables.coefficients(&values[..tables.p]));
+        self.hint = Some(Hint { kind, start: self.now, h, x_series, rate_series });
         let f_series = tables.coefficients(&nodal.force);
         let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
         let terms = self.level.abs() + self.touch.closing * (self.now + h);
@@ -322,7 +362,7 @@ impl<'a> Contact<'a> {
         // the past moves back, and what is far enough joins the impulses
         self.since.advance(h);
         self.near.iter_mut().for_each(|panel| panel.behind += h);
-        self.near.push(Solved { kind, h, behind: 0.0, f_series });
+        self.near.push(Solved::new(self.kernel, kind, h, f_series));
         let far = |panel: &Solved| panel.behind >= if panel.kind == Kind::Start { 2.0 } else { 1.0 } * panel.h;
         let count = self.near.iter().take_while(|panel| far(panel)).count();
         for panel in self.near.drain(..count) {

@@ -66,6 +66,15 @@ impl Kernel {
         self.terms.iter().any(|term| term.1 > 0.0)
     }
 
+    /// The coefficient of the square root, if that is the whole after-effect, as on a beam.
+    pub fn root(&self) -> Option<f64> {
+        let mut bending = self.terms.iter().filter(|term| term.1 > 0.0);
+        match (bending.next(), bending.next()) {
+            (Some(&(c, 0.5)), None) => Some(c),
+            _ => None,
+        }
+    }
+
     /// Adds what an impulse adds to compression and rate at times after its `age`, but for the displacement that it causes at once,
     /// to their sums.
     pub fn add_after_effect(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {

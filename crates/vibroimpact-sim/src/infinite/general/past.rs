@@ -3,6 +3,7 @@
 use super::kernel::Kernel;
 use crate::infinite::free::Free;
 use crate::infinite::history::{History, Impulse};
+use crate::infinite::panel::RootSum;
 use crate::infinite::rule::{Kind, Tables, series};
 
 /// The force on a panel that is solved.
@@ -13,9 +14,32 @@ pub(super) struct Solved {
     /// Time from the panel's end to the present.
     pub behind: f64,
     pub f_series: Vec<f64>,
+    /// Its integral against the square root, where that has a closed form.
+    root: Option<RootSum>,
 }
 
 impl Solved {
+    /// A panel that ends at present.
+    pub fn new(kernel: &Kernel, kind: Kind, h: f64, f_series: Vec<f64>) -> Solved {
+        let root = (kind == Kind::Middle && kernel.root().is_some()).then(|| RootSum::new(&f_series));
+        Solved { kind, h, behind: 0.0, f_series, root }
+    }
+
+    /// Adds the after-effect of the panel on compression and rate at times `after` the present to their sums.
+    pub fn add_after_effect(&self, kernel: &Kernel, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
+        if let (Some(c), Some(root)) = (kernel.root(), &self.root) {
+            // the variable of the closed form is 1 at the panel's end, and grows by 1 in half its length
+            let half = 0.5 * self.h;
+            let beyond: Vec<f64> = after.iter().map(|tau| self.behind + tau).collect();
+            root.add(c * half * half.sqrt(), half.recip(), &beyond, memory);
+            return root.add_slope(c * half.sqrt(), half.recip(), &beyond, slope);
+        }
+        let gap = self.behind + after.iter().copied().fold(f64::INFINITY, f64::min);
+        for impulse in self.impulses(kernel.tables, gap) {
+            kernel.add_after_effect(impulse, after, memory, slope);
+        }
+    }
+
     /// The panel as impulses with their ages at present, for times not closer to the panel's end than `gap`: in pieces
     /// of the panel's variable that grow in proportion to their distance from there.
     pub fn impulses(&self, tables: &Tables, gap: f64) -> Vec<Impulse> {
@@ -166,6 +190,30 @@ mod tests {
         }
     }
 
+    /// The closed form for a middle panel on a beam against the impulses that represent it.
+    #[test]
+    fn closed_form_and_impulses_agree() {
+        let beam = Receptance::new(&[Term { coefficient: 1.5, power: 0.5 }]).unwrap();
+        let scale = beam.scale(&Striker { mass_kg: 1.0, speed_m_s: 1.0 }).unwrap();
+        let kernel = Kernel::new(&beam, &scale, 20);
+        let f: Vec<f64> = kernel.tables.sigma.iter().map(|s| (3.0 * s).sin() + 0.5).collect();
+        let mut panel = Solved::new(&kernel, Kind::Middle, 0.7, kernel.tables.coefficients(&f));
+        for behind in [0.0, 1e-3, 0.5, 40.0] {
+            panel.behind = behind;
+            let after = [3e-3, 0.05, 0.3, 2.0];
+            let sums = |panel: &Solved| {
+                let (mut memory, mut slope) = ([0.0; 4], [0.0; 4]);
+                panel.add_after_effect(&kernel, &after, &mut memory, &mut slope);
+                [memory, slope]
+            };
+            let (closed, impulses) = (sums(&panel), sums(&Solved { root: None, ..panel.clone() }));
+            assert!(panel.root.is_some());
+            for (a, b) in closed.iter().flatten().zip(impulses.iter().flatten()) {
+                assert!((a / b - 1.0).abs() < 1e-13, "{behind}: {a} {b}");
+            }
+        }
+    }
+
     /// The memory of a force `t^2` on a middle panel, `t` on a start panel and the remaining time on an end panel, close
     /// to its end and far from it, against beta-like closed forms evaluated by many-node quadrature.
     #[test]
@@ -175,7 +223,7 @@ mod tests {
             let rule = tables.rule(kind);
             let shape = |t: f64| if kind == Kind::End { 1.0 - t } else { t };
             let f: Vec<f64> = rule.elapsed[..20].iter().map(|&t| shape(t)).collect();
-            let panel = Solved { kind, h: 1.0, behind: 0.0, f_series: tables.coefficients(&f) };
+            let panel = Solved { kind, h: 1.0, behind: 0.0, f_series: tables.coefficients(&f), root: None };
             for gap in [1e-6_f64, 1e-3, 0.1, 1.0, 30.0] {
                 let sum = |power: f64| -> f64 {
                     panel.impulses(tables, gap).iter().map(|i| i.weight * (i.age + gap).powf(power)).sum()
