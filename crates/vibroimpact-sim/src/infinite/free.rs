@@ -10,7 +10,7 @@
 //! the sum is positive, so the bend of the curve is known to full relative precision even when
 //! the body and the structure move at nearly the same speed.
 
-use super::history::History;
+use super::history::{History, Impulse};
 use super::rule::{Tables, series};
 
 /// The impulses as free motion needs them.
@@ -65,6 +65,16 @@ impl Free {
             let age = past.age / time;
             let root = age.sqrt();
             free.push(age, root, past.weight / impulse / (2.0 * root));
+        }
+        free
+    }
+
+    /// The same of some impulses in the units of the impact.
+    pub fn of(impulses: impl Iterator<Item = Impulse>) -> Free {
+        let mut free = Free::default();
+        for Impulse { age, weight } in impulses {
+            let root = age.sqrt();
+            free.push(age, root, weight / (2.0 * root));
         }
         free
     }

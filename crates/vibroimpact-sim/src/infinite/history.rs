@@ -37,7 +37,7 @@ pub(super) struct History {
 
 impl History {
     /// All impulses, oldest block first.
-    pub fn impulses(&self) -> impl Iterator<Item = Impulse> + '_ {
+    pub fn impulses(&self) -> impl Iterator<Item = Impulse> + Clone + '_ {
         self.blocks.iter().flat_map(|block| block.impulses.iter().copied())
     }
 

@@ -21,6 +21,8 @@ use contact_models::{After, Branch, Memory};
 
 /// Number of changes of branch at one time after which the law counts as inconsistent.
 const MOST_AT_ONCE: usize = 16;
+/// Time, in natural times of a contact, over which old impulses are represented by a series.
+const REACH: f64 = 6.0;
 /// A contact is followed for this many of its natural times.
 const LONGEST: f64 = 300.0;
 /// The shortest panel, as a part of the natural time.
@@ -70,6 +72,7 @@ pub(super) struct Contact<'a> {
     settings: &'a Settings,
     touch: Touch,
     branch: Branch,
+    natural_times: (f64, f64),
     past: History,
     before: FreeMotion,
     /// Impulses of this contact that lie far enough back, and the panels that do not.
@@ -100,12 +103,15 @@ impl<'a> Contact<'a> {
         past: History,
     ) -> Contact<'a> {
         let level = touch.memory.touch_m / law.scale.displacement_m;
+        let branch = law.touch(&touch.memory, touch.closing);
+        let natural_times = natural_times(kernel, law, &branch, level, touch.closing);
         Contact {
             kernel,
             law,
             settings,
-            branch: law.touch(&touch.memory, touch.closing),
-            before: FreeMotion::new(kernel, &past),
+            branch,
+            natural_times,
+            before: FreeMotion::during_contact(kernel, &past, REACH * natural_times.0),
             past,
             since: History::default(),
             near: Vec::new(),
@@ -127,7 +133,7 @@ impl<'a> Contact<'a> {
 
     /// Integrates until the contact or the run ends.
     pub fn run(&mut self, budget: usize) -> Ending {
-        let (natural, relaxation) = self.natural_times();
+        let (natural, relaxation) = self.natural_times;
         let shortest = SHORTEST * natural;
         let (mut kind, mut h, mut at_once) = (Kind::Start, natural, 0);
         if self.kernel.instant() == 0.0 {
@@ -189,23 +195,6 @@ impl<'a> Contact<'a> {
     /// Whether a law gives a tensile force, which is not allowed.
     fn pulls(&self, force: &[f64]) -> bool {
         force.iter().any(|f| *f < -1e-6 * self.peak_force)
-    }
-
-    /// The time in which the law, pressed at the closing speed, would take half of that speed from the striker; and
-    /// that in which its damping relaxes.
-    fn natural_times(&self) -> (f64, f64) {
-        let closing = self.touch.closing;
-        let mut h = 2.0_f64.powi(100);
-        while h > 2.0_f64.powi(-200) {
-            let force = self.law.force(&self.branch, self.level + closing * h, 0.0).force;
-            if force * (h + self.kernel.value(h)) <= 0.5 * closing {
-                break;
-            }
-            h *= 0.5;
-        }
-        let there = self.law.force(&self.branch, self.level + closing * h, closing);
-        let relaxation = there.damping / there.stiffness;
-        (h, if relaxation.is_finite() { relaxation.abs() } else { 0.0 })
     }
 
     /// Known terms of the equations of the next panel: compression and rate at its nodes and end without its own force.
@@ -389,6 +378,22 @@ impl<'a> Contact<'a> {
         };
         (Departure { x: self.x, rate: self.rate, body, free }, self.past)
     }
+}
+
+/// The time in which the law, pressed at the closing speed, would take half of that speed from the striker; and that in which its
+/// damping relaxes.
+fn natural_times(kernel: &Kernel, law: &Scaled<'_>, branch: &Branch, level: f64, closing: f64) -> (f64, f64) {
+    let mut h = 2.0_f64.powi(100);
+    while h > 2.0_f64.powi(-200) {
+        let force = law.force(branch, level + closing * h, 0.0).force;
+        if force * (h + kernel.value(h)) <= 0.5 * closing {
+            break;
+        }
+        h *= 0.5;
+    }
+    let there = law.force(branch, level + closing * h, closing);
+    let relaxation = there.damping / there.stiffness;
+    (h, if relaxation.is_finite() { relaxation.abs() } else { 0.0 })
 }
 
 /// The largest value of a force on a panel.

@@ -78,9 +78,23 @@ impl Solved {
 /// ```
 ///
 /// As `0 <= p < 1`, every term of the bend is positive and convex.
+///
+/// During a contact, impulses that are much older than it lasts act as a smooth function, sampled once.
 #[derive(Debug, Clone)]
 pub(in crate::infinite) struct FreeMotion {
     terms: Vec<Bend>,
+    during: Option<During>,
+}
+
+/// The bend over the first time of a contact.
+#[derive(Debug, Clone)]
+struct During {
+    /// End of that time.
+    reach: f64,
+    /// Impulses that are not much older.
+    near: Vec<Bend>,
+    /// Legendre series of `bend / tau^2` and its rate over `tau` by those that are.
+    far: [Vec<f64>; 2],
 }
 
 /// What one term of the kernel, one that bends, makes of the impulses.
@@ -94,38 +108,38 @@ enum Bend {
 
 impl FreeMotion {
     pub fn new(kernel: &Kernel, history: &History) -> FreeMotion {
-        // a term with power 0 does not contribute
-        let bends = kernel.terms.iter().filter(|term| term.1 > 0.0);
-        let terms = bends.map(|&(c, power)| {
-            if power == 0.5 {
-                return Bend::Root(c, Free::new(history, 1.0, 1.0));
-            }
-            let size = |impulse: Impulse| (impulse.age, impulse.weight * c * impulse.age.powf(power));
-            Bend::Power(power, history.impulses().map(size).collect())
-        });
-        FreeMotion { terms: terms.collect() }
+        FreeMotion { terms: bends(kernel, history.impulses()), during: None }
+    }
+
+    /// The same for a contact, most of which happens up to `reach`.
+    pub fn during_contact(kernel: &Kernel, history: &History, reach: f64) -> FreeMotion {
+        // the series of n terms errs by 9.9^(-n)
+        let is_far = |impulse: &Impulse| impulse.age >= 2.0 * reach;
+        let far = bends(kernel, history.impulses().filter(is_far));
+        let (of_bend, of_rate): (Vec<f64>, Vec<f64>) = kernel
+            .tables
+            .sigma
+            .iter()
+            .map(|s| {
+                let tau = reach * s;
+                let (bend, rate) = sum(&far, tau);
+                (bend / (tau * tau), rate / tau)
+            })
+            .unzip();
+        let near = bends(kernel, history.impulses().filter(|impulse| !is_far(impulse)));
+        let far = [of_bend, of_rate].map(|values| kernel.tables.coefficients(&values));
+        FreeMotion { during: Some(During { reach, near, far }), ..FreeMotion::new(kernel, history) }
     }
 
     /// The bend and its rate.
     pub fn bend(&self, tau: f64) -> (f64, f64) {
-        let mut sums = (0.0, 0.0);
-        for term in &self.terms {
-            match term {
-                Bend::Root(c, free) => {
-                    let (bend, gain) = free.bend_and_gain(tau);
-                    sums.0 += c * (tau * tau * bend);
-                    sums.1 += c * gain;
-                }
-                Bend::Power(power, impulses) => {
-                    for (age, size) in impulses {
-                        let y = tau / age;
-                        sums.0 += size * excess(*power, y);
-                        sums.1 += size * power / age * -((power - 1.0) * y.ln_1p()).exp_m1();
-                    }
-                }
+        match &self.during {
+            Some(During { reach, near, far: [of_bend, of_rate] }) if tau <= *reach => {
+                let (bend, rate) = sum(near, tau);
+                (bend + tau * tau * series(of_bend, tau / reach), rate + tau * series(of_rate, tau / reach))
             }
+            _ => sum(&self.terms, tau),
         }
-        sums
     }
 
     /// Speed of the struck point at the origin of time.
@@ -136,6 +150,40 @@ impl FreeMotion {
         };
         self.terms.iter().map(speed).sum()
     }
+}
+
+/// What the terms of a kernel make of impulses; a term with power 0 does not contribute.
+fn bends(kernel: &Kernel, impulses: impl Iterator<Item = Impulse> + Clone) -> Vec<Bend> {
+    let bend = |&(c, power): &(f64, f64)| match power {
+        0.5 => Bend::Root(c, Free::of(impulses.clone())),
+        _ => {
+            let size = |impulse: Impulse| (impulse.age, impulse.weight * c * impulse.age.powf(power));
+            Bend::Power(power, impulses.clone().map(size).collect())
+        }
+    };
+    kernel.terms.iter().filter(|term| term.1 > 0.0).map(bend).collect()
+}
+
+/// The bend by all of them and its rate.
+fn sum(terms: &[Bend], tau: f64) -> (f64, f64) {
+    let mut sums = (0.0, 0.0);
+    for term in terms {
+        match term {
+            Bend::Root(c, free) => {
+                let (bend, gain) = free.bend_and_gain(tau);
+                sums.0 += c * (tau * tau * bend);
+                sums.1 += c * gain;
+            }
+            Bend::Power(power, impulses) => {
+                for (age, size) in impulses {
+                    let y = tau / age;
+                    sums.0 += size * excess(*power, y);
+                    sums.1 += size * power / age * -((power - 1.0) * y.ln_1p()).exp_m1();
+                }
+            }
+        }
+    }
+    sums
 }
 
 /// `1 + p y - (1 + y)^p` for `y >= 0`, without cancellation near zero.
@@ -165,6 +213,26 @@ mod tests {
             let (a, b) = (excess(p, 0.1), excess(p, 0.1 * (1.0 + 1e-12)));
             assert!((a / b - 1.0).abs() < 1e-11, "{p}: {a} {b}");
             assert!((excess(p, 1e-8) / (0.5 * p * (1.0 - p) * 1e-16) - 1.0).abs() < 1e-7);
+        }
+    }
+
+    /// Where old impulses are a series, the motion is that of all impulses.
+    #[test]
+    fn old_impulses_act_as_a_series() {
+        let mut history = History::default();
+        let impulses = (1..40).map(|i| Impulse { age: 0.1 * f64::from(i * i), weight: 1.0 / f64::from(i) });
+        history.push(impulses.collect(), 0.1, 160.0);
+        for powers in [vec![0.5], vec![0.0, 0.3, 0.5]] {
+            let terms: Vec<Term> = powers.iter().map(|&power| Term { coefficient: 1.5, power }).collect();
+            let structure = Receptance::new(&terms).unwrap();
+            let scale = structure.scale(&Striker { mass_kg: 1.0, speed_m_s: 1.0 }).unwrap();
+            let kernel = Kernel::new(&structure, &scale, 20);
+            let (all, during) =
+                (FreeMotion::new(&kernel, &history), FreeMotion::during_contact(&kernel, &history, 3.0));
+            for tau in [1e-9, 1e-3, 0.7, 2.9, 3.0, 3.1, 50.0] {
+                let ((a, a_rate), (b, b_rate)) = (all.bend(tau), during.bend(tau));
+                assert!((b / a - 1.0).abs() < 1e-13 && (b_rate / a_rate - 1.0).abs() < 1e-13, "{tau}: {a} {b}");
+            }
         }
     }
 
