@@ -98,7 +98,7 @@ pub struct Differentiated {
 }
 
 /// Factor of the tolerance of the coarser motion whose derivatives give the uncertainty.
-pub(crate) const COARSER: f64 = 32.0;
+const COARSER: f64 = 32.0;
 /// Factor from the difference of these derivatives to the uncertainty.
 const TIMES: f64 = 10.0;
 /// Further relative error of a derivative, by the digits that differences of the neighbours lose.
@@ -124,17 +124,22 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// For this tolerance of the run and these offsets of the neighbours, which magnify the rounding of the numbers that define it.
-    /// Two motions can agree by chance, so the relative error is at least the tolerance of the coarser motion.
-    pub fn new(tolerance: f64, offsets: &[f64; 4]) -> Known {
+    /// For this tolerance of the coarser motion and these offsets of the neighbours, which magnify the rounding of the numbers that
+    /// define it. Two motions can agree by chance, so the relative error is at least that tolerance.
+    pub fn new(coarser: f64, offsets: &[f64; 4]) -> Known {
         let nearest = offsets.iter().map(|offset| offset.abs()).filter(|offset| *offset > 0.0).fold(f64::MAX, f64::min);
-        Known { relative: COARSER * tolerance + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
+        Known { relative: coarser + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
     }
 
     /// A derivative of this output, with that along the coarser motion.
     pub fn beside(self, value: f64, coarse: Option<f64>, output: f64) -> Derivative {
+        self.differing(value, coarse.map(|coarse| (coarse - value).abs()), output)
+    }
+
+    /// A derivative of this output that differs from that along the coarser motion by this much.
+    pub fn differing(self, value: f64, difference: Option<f64>, output: f64) -> Derivative {
         let floor = self.relative * value.abs() + self.rounding * output.abs();
-        Derivative { value, uncertainty: coarse.map(|coarse| TIMES * (coarse - value).abs() + floor) }
+        Derivative { value, uncertainty: difference.map(|difference| TIMES * difference + floor) }
     }
 }
 
@@ -234,7 +239,7 @@ impl Solver<'_> {
         };
         let derivatives = fine.into_iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
             let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
-            let known = Known::new(settings.tolerance, &parameters[i].offsets);
+            let known = Known::new(COARSER * settings.tolerance, &parameters[i].offsets);
             Ok(Derivatives { end_s, contacts: changes?.beside(&intervals, coarse, known) })
         });
         let derivatives = derivatives.collect();

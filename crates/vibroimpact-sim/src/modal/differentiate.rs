@@ -2,14 +2,17 @@
 
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
-use super::solution::{Outcome, Solution, SubImpact};
-use super::solve::{Impact, LOOSEST, Run, Solved, Solver};
+use super::solution::{Outcome, Solution};
+use super::solve::{COARSER, Impact, Run, SECOND, Solved, Solver};
+use super::time_unit::Unit;
+use crate::assembly::Assembly;
 use crate::assembly::change::Change;
-use crate::assembly::differentiate::{COARSER, Known, check_offsets, nearest_graze};
+use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
 use crate::assembly::solve::Keep;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
+use crate::concurrent::both;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
@@ -123,6 +126,9 @@ struct Changes {
     rate: Vec<f64>,
 }
 
+/// The coarser solution along which the derivatives are computed, too.
+const BESIDE: usize = 0;
+
 impl Solver {
     /// Solves one impact and differentiates it with respect to some parameters. The tangent of the motion is computed; motions are
     /// not differenced. Each parameter costs less than an impact.
@@ -180,12 +186,11 @@ impl Solver {
         other.as_ref().unwrap_or(self).along_all(&impact, parameters)
     }
 
-    /// The impact at its tolerance and at a coarser one, differentiated along both.
+    /// The impact at its tolerance and in another unit of time at a coarser one, differentiated along both.
     fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
-        let Solved { solution, run: fine, .. } =
+        let Solved { solution, run: fine, coarser, .. } =
             self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss)?;
-        let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
         let none = |solution, why| {
             let derivatives = parameters.iter().map(|_| Err(why)).collect();
             Differentiated { solution, derivatives, nearest_graze: 1.0, nearest_miss: None }
@@ -193,37 +198,78 @@ impl Solver {
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution, NoDerivative::Outcome));
         }
-        let (modes, moved) = (self.modes(), self.moved());
-        let pose = |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, moved, striker, start);
-        let assembly = pose(modes, striker, start);
-        let posed = assembly.with_laws(vec![law]);
-        let system = System::new(&posed);
-        let near = |at: &Posing| pose(&at.structure.modes, at.striker, at.start);
-        let neighbours: Vec<_> = parameters.iter().map(|by| by.neighbours.each_ref().map(near)).collect();
-        let mut changes = Vec::with_capacity(parameters.len());
-        let mut sides = Vec::with_capacity(parameters.len());
-        for (assemblies, by) in neighbours.iter().zip(parameters) {
-            let posed: [Posed; 4] = array::from_fn(|i| assemblies[i].with_laws(vec![by.neighbours[i].law]));
-            let stencil = Stencil::new(by.offsets);
-            changes.push(Change::new(&system, posed.each_ref(), by.changes_law, stencil));
-            sides.push(posed.each_ref().map(|posed| system.link(posed.sides[0]).sides[0].clone()));
-        }
-        let along = Along { modes, moved, impact, parameters, posed: &posed, system: &system, changes, sides };
-        let mut expansions = Expansions::default();
-        let (changes, touches) = match along.changes(&fine, &mut expansions) {
+        let coarser = coarser.unwrap_or_else(|| self.in_other_unit(impact, BESIDE, Keep::Motion).0);
+        let (unit, factor) = COARSER[BESIDE];
+        let (coarse, found) = both(
+            settings.concurrent,
+            || self.other(BESIDE).along(unit, impact, parameters, &coarser),
+            || self.along(SECOND, impact, parameters, &fine),
+        );
+        let (changes, touches) = match found {
             Ok(found) => found,
             Err(why) => return Ok(none(solution, why)),
         };
-        let coarse = along.changes(&coarse, &mut expansions).map_or(Vec::new(), |(changes, _)| changes);
+        let coarse = coarse.map_or(Vec::new(), |(changes, _)| changes);
+        let by_impulse = [self.mobility(striker) / self.approach(striker, start), striker.mass_kg.recip()];
         let of = |(i, fine): (usize, Result<Changes, NoDerivative>)| {
             let fine = fine?;
             let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
             let coarse = coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len());
-            Ok(fine.beside(coarse, &solution, Known::new(settings.tolerance, &parameters[i].offsets)))
+            let known = Known::new(factor * settings.tolerance, &parameters[i].offsets);
+            Ok(fine.beside(coarse, &solution, known, by_impulse))
         };
         let derivatives = changes.into_iter().enumerate().map(of).collect();
         let (nearest_graze, nearest_miss) = nearest_graze(touches, fine.record.nearest_miss);
         Ok(Differentiated { solution, derivatives, nearest_graze, nearest_miss })
+    }
+
+    /// Derivatives along a run that was computed in this solver's unit of time; impact, parameters and derivatives are in seconds.
+    fn along(
+        &self,
+        unit: Unit,
+        impact: &Impact,
+        parameters: &[Parameter],
+        run: &Run,
+    ) -> Result<AllChanges, NoDerivative> {
+        if run.outcome != Outcome::Rebound {
+            return Err(NoDerivative::Outcome);
+        }
+        let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
+        let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
+        let in_unit = |at: &Posing| (unit.modes(&at.structure.modes), unit.striker(at.striker), unit.start(at.start));
+        let around: Vec<_> = parameters.iter().map(|by| by.neighbours.each_ref().map(in_unit)).collect();
+        let laws: Vec<_> = parameters.iter().map(|by| by.neighbours.map(|at| unit.law(at.law))).collect();
+        let pose =
+            |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, self.moved(), striker, start);
+        let assembly = pose(self.modes(), &striker, &start);
+        let posed = assembly.with_laws(vec![&law]);
+        let system = System::new(&posed);
+        let mut changes = Vec::with_capacity(parameters.len());
+        let mut sides = Vec::with_capacity(parameters.len());
+        let assemblies: Vec<[Assembly<()>; 4]> = around
+            .iter()
+            .map(|four| four.each_ref().map(|(modes, striker, start)| pose(modes, striker, start)))
+            .collect();
+        for ((assemblies, laws), by) in assemblies.iter().zip(&laws).zip(parameters) {
+            let posed: [Posed; 4] = array::from_fn(|i| assemblies[i].with_laws(vec![&laws[i]]));
+            let stencil = Stencil::new(by.offsets);
+            changes.push(Change::new(&system, posed.each_ref(), by.changes_law, stencil));
+            sides.push(posed.each_ref().map(|posed| system.link(posed.sides[0]).sides[0].clone()));
+        }
+        let around = around.iter().zip(parameters).map(|(around, by)| (Stencil::new(by.offsets), around)).collect();
+        let along = Along {
+            modes: self.modes(),
+            moved: self.moved(),
+            impact: &impact,
+            around,
+            posed: &posed,
+            system: &system,
+            changes,
+            sides,
+        };
+        let (changes, touches) = along.changes(run)?;
+        let in_seconds = |found: Result<Changes, NoDerivative>| Ok(found?.in_seconds(unit));
+        Ok((changes.into_iter().map(in_seconds).collect(), touches.map(|speed| speed * unit.0)))
     }
 
     /// The modes that move the contact, at the value itself or at a neighbour.
@@ -236,15 +282,18 @@ impl Solver {
     }
 }
 
-/// Data for the derivatives of one impact.
+/// The numbers of a neighbouring impact in a unit of time: modes, striker and start.
+type Near = (Vec<Mode>, Striker, Start);
+
+/// Data for the derivatives of one impact, all in the unit of time of its run.
 struct Along<'a> {
     modes: &'a [Mode],
     moved: &'a [usize],
     impact: &'a Impact<'a>,
-    parameters: &'a [Parameter<'a>],
+    /// For each parameter.
+    around: Vec<(Stencil<4>, &'a [Near; 4])>,
     posed: &'a Posed<'a>,
     system: &'a System,
-    /// For each parameter.
     changes: Vec<Change<'a>>,
     /// For each parameter the weight of the striker's motion at the neighbours.
     sides: Vec<[Option<Span>; 4]>,
@@ -252,12 +301,9 @@ struct Along<'a> {
 
 impl Along<'_> {
     /// Derivatives along the motion of one run, and the speeds of its slowest and fastest touch.
-    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Result<AllChanges, NoDerivative> {
-        if run.outcome != Outcome::Rebound {
-            return Err(NoDerivative::Outcome);
-        }
+    fn changes(&self, run: &Run) -> Result<AllChanges, NoDerivative> {
         let stretches = &run.record.stretches;
-        let found = tangents(self.posed, self.system, stretches, (&self.changes, None), expansions)?;
+        let found = tangents(self.posed, self.system, stretches, (&self.changes, None), &mut Expansions::default())?;
         let end = stretches.last().ok_or(NoDerivative::Outcome)?.rate.as_slice();
         let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
         let striker = &self.system.links[0].sides[0];
@@ -267,17 +313,17 @@ impl Along<'_> {
             self.moved.iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
             all
         };
-        type Found<'a> = (Result<Tangent, NoDerivative>, &'a Parameter<'a>);
-        let of = |((tangent, parameter), sides): (Found, &[Option<Span>; 4])| {
+        type Found<'a> = (Result<Tangent, NoDerivative>, &'a (Stencil<4>, &'a [Near; 4]));
+        let of = |((tangent, around), sides): (Found, &[Option<Span>; 4])| {
             let tangent = tangent?;
-            let by_mass = Stencil::new(parameter.offsets).slope(sides.each_ref().map(|side| velocity_of(side, end)));
+            let by_mass = around.0.slope(sides.each_ref().map(|side| velocity_of(side, end)));
             let velocity = [velocity_of(striker, end), velocity_of(striker, &tangent.rate) + by_mass];
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let restitution = restitution_change(self.modes, self.impact, parameter, velocity, [&pick(end), &rate]);
+            let restitution = restitution_change(self.modes, self.impact, *around, velocity, [&pick(end), &rate]);
             let numbers = [restitution, tangent.time_s, velocity[1]];
             Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
         };
-        let changes = found.tangents.into_iter().zip(self.parameters).zip(&self.sides).map(of).collect();
+        let changes = found.tangents.into_iter().zip(&self.around).zip(&self.sides).map(of).collect();
         Ok((changes, found.touches))
     }
 }
@@ -286,45 +332,90 @@ impl Along<'_> {
 fn restitution_change(
     modes: &[Mode],
     impact: &Impact,
-    parameter: &Parameter,
+    (stencil, around): (Stencil<4>, &[Near; 4]),
     [velocity, velocity_change]: [f64; 2],
     [end, end_change]: [&[f64]; 2],
 ) -> f64 {
     let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
         modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
     };
-    let (stencil, neighbours) = (Stencil::new(parameter.offsets), &parameter.neighbours);
-    let by_shape = stencil.slope(neighbours.map(|at| rigid(&at.structure.modes, end)));
+    let by_shape = stencil.slope(around.each_ref().map(|(modes, ..)| rigid(modes, end)));
     let parting = velocity - rigid(modes, end);
     let parting_change = velocity_change - by_shape - rigid(modes, end_change);
     let before = impact.striker.speed_m_s + rigid(modes, &impact.start.rate);
-    let before_of = |at: Posing| at.striker.speed_m_s + rigid(&at.structure.modes, &at.start.rate);
-    let before_change = stencil.slope(neighbours.map(before_of));
+    let before_of = |(modes, striker, start): &Near| striker.speed_m_s + rigid(modes, &start.rate);
+    let before_change = stencil.slope(around.each_ref().map(before_of));
     (parting_change - parting / before * before_change) / before
 }
 
 impl Changes {
-    /// Derivatives with their uncertainty from the coarser motion.
-    fn beside(&self, coarse: Option<&Changes>, solution: &Solution, known: Known) -> Derivatives {
-        let with = |of: &dyn Fn(&Changes) -> f64, output: f64| known.beside(of(self), coarse.map(of), output);
-        let number = |i: usize, output: f64| with(&|changes| changes.numbers[i], output);
-        let interval = |(i, sub): (usize, &SubImpact)| {
-            let of = |get: fn(&IntervalChange) -> f64, output: f64| with(&|changes| get(&changes.intervals[i]), output);
-            SubImpactDerivatives {
-                start_s: of(|change| change.start_s, sub.start_s),
-                end_s: of(|change| change.end_s, sub.end_s),
-                impulse_n_s: of(|change| change.impulse_n_s, sub.impulse_n_s),
-                peak_force_n: of(|change| change.peak_force_n, sub.peak_force_n),
-                peak_compression_m: of(|change| change.peak_compression_m, sub.peak_compression_m),
-            }
+    /// Derivatives in seconds of those in a unit of time.
+    fn in_seconds(mut self, unit: Unit) -> Changes {
+        let [_, end_s, velocity_m_s] = &mut self.numbers;
+        *end_s = unit.seconds(*end_s);
+        *velocity_m_s *= unit.0;
+        for interval in &mut self.intervals {
+            interval.start_s = unit.seconds(interval.start_s);
+            interval.end_s = unit.seconds(interval.end_s);
+            interval.impulse_n_s *= unit.0;
+            interval.peak_force_n *= unit.0 * unit.0;
+            interval.approach_speed_m_s *= unit.0;
+            interval.separation_speed_m_s *= unit.0;
+        }
+        self.rate.iter_mut().for_each(|rate| *rate *= unit.0);
+        self
+    }
+
+    /// Derivatives with their uncertainty from the coarser motion; `by_impulse` are restitution and final velocity per impulse.
+    ///
+    /// Two motions agree in some numbers by accident. A difference therefore counts for all later outputs of the same kind as well,
+    /// since the error of a motion persists, and the largest one of an impulse counts for restitution and velocity.
+    fn beside(&self, coarse: Option<&Changes>, solution: &Solution, known: Known, by_impulse: [f64; 2]) -> Derivatives {
+        // the largest difference so far
+        let mut largest = Largest::default();
+        let differ = |of: &dyn Fn(&Changes) -> f64| coarse.map(|coarse| (of(coarse) - of(self)).abs());
+        let mut sub_impacts = Vec::with_capacity(self.intervals.len());
+        for (i, sub) in solution.sub_impacts.iter().take(self.intervals.len()).enumerate() {
+            let with = |largest: &mut f64, get: fn(&IntervalChange) -> f64, output: f64| {
+                let difference = differ(&|changes| get(&changes.intervals[i])).map(|difference| {
+                    *largest = largest.max(difference);
+                    *largest
+                });
+                known.differing(get(&self.intervals[i]), difference, output)
+            };
+            sub_impacts.push(SubImpactDerivatives {
+                start_s: with(&mut largest.time_s, |change| change.start_s, sub.start_s),
+                end_s: with(&mut largest.time_s, |change| change.end_s, sub.end_s),
+                impulse_n_s: with(&mut largest.impulse_n_s, |change| change.impulse_n_s, sub.impulse_n_s),
+                peak_force_n: with(&mut largest.force_n, |change| change.peak_force_n, sub.peak_force_n),
+                peak_compression_m: with(
+                    &mut largest.compression_m,
+                    |change| change.peak_compression_m,
+                    sub.peak_compression_m,
+                ),
+            });
+        }
+        let number = |i: usize, least: f64, output: f64| {
+            let difference = differ(&|changes| changes.numbers[i]).map(|difference| difference.max(least));
+            known.differing(self.numbers[i], difference, output)
         };
+        let [restitution, velocity_m_s] = by_impulse.map(|by_impulse| by_impulse * largest.impulse_n_s);
         Derivatives {
-            restitution: number(0, solution.restitution.unwrap_or(0.0)),
-            end_s: number(1, solution.end_s),
-            striker_velocity_m_s: number(2, solution.striker_velocity_m_s),
-            sub_impacts: solution.sub_impacts.iter().take(self.intervals.len()).enumerate().map(interval).collect(),
+            restitution: number(0, restitution, solution.restitution.unwrap_or(0.0)),
+            end_s: number(1, largest.time_s, solution.end_s),
+            striker_velocity_m_s: number(2, velocity_m_s, solution.striker_velocity_m_s),
+            sub_impacts,
             amplitude: self.amplitude.clone(),
             rate: self.rate.clone(),
         }
     }
+}
+
+/// The largest differences between two motions in derivatives of times, impulses, forces and compressions.
+#[derive(Default)]
+struct Largest {
+    time_s: f64,
+    impulse_n_s: f64,
+    force_n: f64,
+    compression_m: f64,
 }

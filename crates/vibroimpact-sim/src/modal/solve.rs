@@ -24,9 +24,9 @@ use std::sync::{Arc, OnceLock};
 pub(crate) const LOOSEST: f64 = 1e-4;
 /// Units of time of the coarser solutions that give the uncertainty, by their numbers in a second (`2^(1/2)` and `2^(1/4)`), and
 /// factors of their tolerances. No two of the three solutions share a step.
-const COARSER: [(Unit, f64); 2] = [(Unit(SQRT_2), 16.0), (Unit(1.189_207_115_002_721), 8.0)];
+pub(crate) const COARSER: [(Unit, f64); 2] = [(Unit(SQRT_2), 16.0), (Unit(1.189_207_115_002_721), 8.0)];
 /// The solver's own unit of time.
-const SECOND: Unit = Unit(1.0);
+pub(crate) const SECOND: Unit = Unit(1.0);
 /// Factor of the tolerance of a further solution in this unit, where these differ by more than the tolerance or in the number
 /// of their contacts.
 const FURTHER: f64 = 8.0;
@@ -96,13 +96,15 @@ pub(crate) struct Run {
 pub(crate) struct Solved {
     pub solution: Solution,
     pub run: Run,
+    /// The first of the coarser solutions, with its motion if the nearest miss is kept; `None` if no uncertainty was requested.
+    pub coarser: Option<Run>,
     system: System,
     /// Work of the contact and loss by damping in the run, if computed while coarser problems were solved in another thread (J).
     work_and_damping_j: Option<[f64; 2]>,
 }
 
 /// The restitution of an impact, and those that it would have if it ended after each of its contacts.
-struct Restitutions {
+pub(crate) struct Restitutions {
     flights: Vec<Flight>,
     last: f64,
 }
@@ -203,7 +205,7 @@ impl Solver {
         settings: &Settings,
     ) -> Result<Recording, InvalidInput> {
         let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
-        let Solved { solution, run, system, work_and_damping_j } =
+        let Solved { solution, run, system, work_and_damping_j, .. } =
             self.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
         Ok(Recording {
             solution,
@@ -263,7 +265,7 @@ impl Solver {
         let mut lowered = self.lower(&impact);
         let tolerance = settings.tolerance.min(LOOSEST);
         let Settings { estimate_uncertainty, concurrent, .. } = *settings;
-        let (beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
+        let (mut beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
             let solve_and_book = || {
                 let run = self.run_lowered(&impact, &mut lowered, tolerance, keep);
                 let system = &lowered.system;
@@ -271,7 +273,7 @@ impl Solver {
                 let booked = (keep == Keep::Motion).then(book);
                 (run, booked)
             };
-            let (coarser, (run, booked)) = both(true, || self.coarser(&impact), solve_and_book);
+            let (coarser, (run, booked)) = both(true, || self.coarser(&impact, keep), solve_and_book);
             (Some(coarser), run, booked)
         } else {
             (None, self.run_lowered(&impact, &mut lowered, tolerance, keep), None)
@@ -280,8 +282,8 @@ impl Solver {
         let restitution = self.restitution(&run, striker, start);
         let known = if estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
         let restitution_uncertainty = known.map(|known| {
-            let coarser = beside.unwrap_or_else(|| self.coarser(&impact));
-            self.uncertainty(&known, &coarser, &impact, &mut lowered, &mut counts)
+            let coarser = beside.get_or_insert_with(|| self.coarser(&impact, keep));
+            self.uncertainty(&known, coarser, &impact, &mut lowered, &mut counts)
         });
         let solution = Solution {
             outcome: run.outcome,
@@ -294,21 +296,19 @@ impl Solver {
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };
-        Ok(Solved { solution, run, system: lowered.system, work_and_damping_j })
+        let coarser = beside.into_iter().flatten().next().map(|(run, _)| run);
+        Ok(Solved { solution, run, coarser, system: lowered.system, work_and_damping_j })
     }
 
-    /// Coarser solutions of the same impact in other units of time, up to the first without a restitution.
-    fn coarser(&self, impact: &Impact) -> Vec<(Counts, Option<Restitutions>)> {
+    /// Coarser solutions of the same impact in other units of time, up to the first without a restitution. The motion of the first
+    /// is kept for derivatives.
+    fn coarser(&self, impact: &Impact, keep: Keep) -> Vec<(Run, Option<Restitutions>)> {
         let mut found = Vec::with_capacity(COARSER.len());
-        for (other, (unit, factor)) in self.others.iter().zip(COARSER) {
-            let solver = other.get_or_init(|| Box::new(Solver::unchecked(unit.modes(&self.modes))));
-            let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
-            let tolerance = factor * impact.settings.tolerance.min(LOOSEST);
-            let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
-            let run = solver.run_lowered(&impact, &mut solver.lower(&impact), tolerance, Keep::Result);
-            let restitutions = solver.restitutions(&run, &impact, unit);
+        for which in 0..COARSER.len() {
+            let keep = if which == 0 && keep == Keep::NearestMiss { Keep::Motion } else { Keep::Result };
+            let (run, restitutions) = self.in_other_unit(impact, which, keep);
             let ends = restitutions.is_none();
-            found.push((run.counts, restitutions));
+            found.push((run, restitutions));
             if ends {
                 break;
             }
@@ -316,19 +316,37 @@ impl Solver {
         found
     }
 
+    /// One of these solutions, in its unit of time.
+    pub(crate) fn in_other_unit(&self, impact: &Impact, which: usize, keep: Keep) -> (Run, Option<Restitutions>) {
+        let (unit, factor) = COARSER[which];
+        let solver = self.other(which);
+        let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
+        let tolerance = factor * impact.settings.tolerance.min(LOOSEST);
+        let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
+        let run = solver.run_lowered(&impact, &mut solver.lower(&impact), tolerance, keep);
+        let restitutions = solver.restitutions(&run, &impact, unit);
+        (run, restitutions)
+    }
+
+    /// The same structure in one of the other units of time.
+    pub(crate) fn other(&self, which: usize) -> &Solver {
+        let of = |unit: Unit| Solver { moved: self.moved.clone(), ..Solver::unchecked(unit.modes(&self.modes)) };
+        self.others[which].get_or_init(|| Box::new(of(COARSER[which].0)))
+    }
+
     /// Estimated error of the restitution, from coarser solutions of the same impact: 1 if one of them has no restitution.
     fn uncertainty(
         &self,
         known: &Restitutions,
-        coarser: &[(Counts, Option<Restitutions>)],
+        coarser: &[(Run, Option<Restitutions>)],
         impact: &Impact,
         lowered: &mut Lowered,
         counts: &mut Counts,
     ) -> f64 {
         let tolerance = impact.settings.tolerance.min(LOOSEST);
         let (mut spread, mut same_contacts) = (0.0f64, true);
-        for (counted, coarser) in coarser {
-            *counts += *counted;
+        for (run, coarser) in coarser {
+            *counts += run.counts;
             let Some(coarser) = coarser else { return 1.0 };
             spread = spread.max(known.difference(coarser));
             same_contacts &= known.flights.len() == coarser.flights.len();
@@ -359,10 +377,6 @@ impl Solver {
 
     pub(crate) fn moved(&self) -> &[usize] {
         &self.moved
-    }
-
-    pub(crate) fn run(&self, impact: &Impact, tolerance: f64, keep: Keep) -> Run {
-        self.run_lowered(impact, &mut self.lower(impact), tolerance, keep)
     }
 
     fn lower(&self, impact: &Impact) -> Lowered {
@@ -430,8 +444,7 @@ impl Solver {
     fn restitutions(&self, run: &Run, impact: &Impact, unit: Unit) -> Option<Restitutions> {
         let Impact { striker, start, .. } = *impact;
         let last = self.restitution(run, striker, start)?;
-        let mobility = striker.mass_kg.recip() + self.rigid_motion(|k| self.modes[k].shape);
-        let (approach, mut impulse_n_s) = (self.approach(striker, start), 0.0);
+        let (mobility, approach, mut impulse_n_s) = (self.mobility(striker), self.approach(striker, start), 0.0);
         let after = |contact: &SubImpact| {
             impulse_n_s += contact.impulse_n_s;
             let contact_s = [contact.start_s, contact.end_s].map(|time| unit.seconds(time));
@@ -440,8 +453,13 @@ impl Solver {
         Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last })
     }
 
+    /// Relative velocity of the rigid-body motions per impulse (1/kg).
+    pub(crate) fn mobility(&self, striker: &Striker) -> f64 {
+        striker.mass_kg.recip() + self.rigid_motion(|k| self.modes[k].shape)
+    }
+
     /// Velocity of approach of the rigid-body motions (m/s).
-    fn approach(&self, striker: &Striker, start: &Start) -> f64 {
+    pub(crate) fn approach(&self, striker: &Striker, start: &Start) -> f64 {
         striker.speed_m_s + self.rigid_motion(|k| start.rate[k])
     }
 

@@ -11,7 +11,7 @@ use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
 pub(crate) struct Unit(pub f64);
 
 /// A law between compressions and their rates per unit.
-struct Law<'a> {
+pub(crate) struct Law<'a> {
     law: &'a dyn ContactLaw,
     units: f64,
 }
@@ -38,7 +38,7 @@ impl Unit {
     }
 
     /// The law between compressions and their rates per unit.
-    pub fn law(self, law: &dyn ContactLaw) -> impl ContactLaw + '_ {
+    pub fn law(self, law: &dyn ContactLaw) -> Law<'_> {
         Law { law, units: self.0 }
     }
 }
