@@ -43,6 +43,7 @@ pub(super) fn solve(
         if forces.iter().any(|f| !(f.force.is_finite() && f.stiffness.is_finite() && f.damping.is_finite())) {
             return Err(Fault::Law);
         }
+        let fresh = kept.is_none();
         let factors = kept.get_or_insert_with(|| {
             let jacobian = DMatrix::from_fn(p, p, |i, j| {
                 let delta = if i == j { 1.0 } else { 0.0 };
@@ -73,8 +74,9 @@ pub(super) fn solve(
             nodal.x[i] = known[0][i] - dot(&matrices.compression[row.clone()], &nodal.force);
             nodal.rate[i] = known[1][i] - dot(&matrices.rate[row], &nodal.force);
         }
-        // converged, or as far as rounding lets the steps shrink
-        if change <= 1e-15 * largest || (change <= 1e-11 * largest && change > 0.1 * last) || largest == 0.0 {
+        // converged, or as far as rounding lets the steps shrink; with old factors they shrink slowly before that
+        let stalled = fresh && change <= 1e-11 * largest && change > 0.1 * last;
+        if change <= 1e-15 * largest || stalled || largest == 0.0 {
             return Ok(nodal);
         }
         if !(change < 0.1 * largest && change < 0.2 * last) {
