@@ -33,7 +33,7 @@ pub(super) struct Forcing {
 
 /// Time (natural units of the contact) over which far impulses are represented by a series; far
 /// are those of twice this age, so that a series of `n` terms errs by `9.9^(-n)`.
-const REACH: f64 = 6.0;
+pub(super) const REACH: f64 = 6.0;
 
 impl Forcing {
     pub fn new(history: &History, time: f64, impulse: f64, tables: &Tables) -> Forcing {
@@ -60,16 +60,12 @@ impl Forcing {
 impl Free {
     /// With ages in units of `time` and impulses in units of `impulse`.
     pub fn new(history: &History, time: f64, impulse: f64) -> Free {
-        let mut free = Free::default();
-        for past in history.impulses() {
-            let age = past.age / time;
-            let root = age.sqrt();
-            free.push(age, root, past.weight / impulse / (2.0 * root));
-        }
-        free
+        Free::of(
+            history.impulses().map(|Impulse { age, weight }| Impulse { age: age / time, weight: weight / impulse }),
+        )
     }
 
-    /// The same of some impulses in the units of the impact.
+    /// From impulses in the units of the free motion.
     pub fn of(impulses: impl Iterator<Item = Impulse>) -> Free {
         let mut free = Free::default();
         for Impulse { age, weight } in impulses {
@@ -101,27 +97,15 @@ impl Free {
         })
     }
 
-    /// [`bend`](Self::bend) and [`rate_gain`](Self::rate_gain) with one root for both.
+    /// [`bend`](Self::bend) and [`rate_gain`](Self::rate_gain), with a single square root for each impulse.
     pub fn bend_and_gain(&self, tau: f64) -> (f64, f64) {
-        let (mut bends, mut gains) = ([0.0; 4], [0.0; 4]);
-        let mut add = |i: usize, age: f64, root: f64, c: f64| {
+        let [bend, gain] = self.sums(|age, root, c| {
             let now = (age + tau).sqrt();
             let both = now + root;
             let share = c / (now * both * both);
-            bends[i] += share * now;
-            gains[i] += share * both;
-        };
-        let (ages, roots, cs) = (self.age.chunks_exact(4), self.root.chunks_exact(4), self.c.chunks_exact(4));
-        for ((&age, &root), &c) in ages.remainder().iter().zip(roots.remainder()).zip(cs.remainder()) {
-            add(0, age, root, c);
-        }
-        for ((age, root), c) in ages.zip(roots).zip(cs) {
-            for i in 0..4 {
-                add(i, age[i], root[i], c[i]);
-            }
-        }
-        let sum = |parts: [f64; 4]| (parts[0] + parts[1]) + (parts[2] + parts[3]);
-        (sum(bends), tau * sum(gains))
+            [share * now, share * both]
+        });
+        (bend, tau * gain)
     }
 
     /// `x''(tau)`.
@@ -139,22 +123,25 @@ impl Free {
         self.sum(|_, root, c| 2.0 * c * root)
     }
 
-    /// Sum over the impulses in four interleaved parts, which the compiler can vectorise.
+    /// Sum over the impulses.
     fn sum(&self, term: impl Fn(f64, f64, f64) -> f64) -> f64 {
-        let mut parts = [0.0; 4];
+        let [sum] = self.sums(|age, root, c| [term(age, root, c)]);
+        sum
+    }
+
+    /// Sums over the impulses in four interleaved parts, which the compiler can vectorise.
+    fn sums<const N: usize>(&self, terms: impl Fn(f64, f64, f64) -> [f64; N]) -> [f64; N] {
+        let (mut parts, mut rest) = ([[0.0; N]; 4], [0.0; N]);
+        let add = |sums: &mut [f64; N], terms: [f64; N]| (0..N).for_each(|n| sums[n] += terms[n]);
         let (ages, roots, cs) = (self.age.chunks_exact(4), self.root.chunks_exact(4), self.c.chunks_exact(4));
-        let rest: f64 = ages
-            .remainder()
-            .iter()
-            .zip(roots.remainder())
-            .zip(cs.remainder())
-            .map(|((&age, &root), &c)| term(age, root, c))
-            .sum();
+        for ((&age, &root), &c) in ages.remainder().iter().zip(roots.remainder()).zip(cs.remainder()) {
+            add(&mut rest, terms(age, root, c));
+        }
         for ((age, root), c) in ages.zip(roots).zip(cs) {
             for i in 0..4 {
-                parts[i] += term(age[i], root[i], c[i]);
+                add(&mut parts[i], terms(age[i], root[i], c[i]));
             }
         }
-        (parts[0] + parts[1]) + (parts[2] + parts[3]) + rest
+        std::array::from_fn(|n| (parts[0][n] + parts[1][n]) + (parts[2][n] + parts[3][n]) + rest[n])
     }
 }

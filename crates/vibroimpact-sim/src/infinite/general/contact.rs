@@ -11,6 +11,7 @@ use super::law::Scaled;
 use super::past::{FreeMotion, Solved};
 use crate::StopReason;
 use crate::infinite::contact::Turn;
+use crate::infinite::free::REACH;
 use crate::infinite::history::{History, Impulse};
 use crate::infinite::panel::{end_acceleration, turns, variable};
 use crate::infinite::piece::Piece;
@@ -21,8 +22,6 @@ use contact_models::{After, Branch, Memory};
 
 /// Number of changes of branch at one time after which the law counts as inconsistent.
 const MOST_AT_ONCE: usize = 16;
-/// Time, in natural times of a contact, over which old impulses are represented by a series.
-const REACH: f64 = 6.0;
 /// A contact is followed for this many of its natural times.
 const LONGEST: f64 = 300.0;
 /// The shortest panel, as a part of the natural time.
@@ -50,6 +49,7 @@ struct Trial {
     kind: Kind,
     h: f64,
     nodal: Nodal,
+    x_series: Vec<f64>,
     f_series: Vec<f64>,
     /// Impulse that the polynomial of the force does not resolve, relative to the allowed one.
     unresolved: f64,
@@ -72,6 +72,7 @@ pub(super) struct Contact<'a> {
     settings: &'a Settings,
     touch: Touch,
     branch: Branch,
+    /// See [`natural_times`].
     natural_times: (f64, f64),
     past: History,
     before: FreeMotion,
@@ -230,18 +231,20 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// The same as on a panel solved before, or with its last acceleration beyond it.
+    /// Compression and rate as on the panel solved before, and beyond it with its last acceleration.
     fn guess_from(&self, hint: &Hint, kind: Kind, h: f64) -> Nodal {
         let mut nodal = self.guess(kind, h);
         let (offset, scale) = ((self.now - hint.start) / hint.h, h / hint.h);
         let elapsed = &self.kernel.tables.rule(kind).elapsed;
-        for ((x, rate), e) in nodal.x.iter_mut().zip(&mut nodal.rate).zip(elapsed) {
-            if offset < 0.5 {
+        if offset < 0.5 {
+            for ((x, rate), e) in nodal.x.iter_mut().zip(&mut nodal.rate).zip(elapsed) {
                 let s = variable(hint.kind, offset + scale * e);
                 (*x, *rate) = (series(&hint.x_series, s), series(&hint.rate_series, s));
-            } else if hint.kind != Kind::End {
-                let moved = 0.5 * h * e * h * e * end_acceleration(hint.kind, hint.h, &hint.x_series);
-                *x += moved.clamp(-h * self.rate.abs(), h * self.rate.abs());
+            }
+        } else if hint.kind != Kind::End {
+            let (acceleration, most) = (end_acceleration(hint.kind, hint.h, &hint.x_series), h * self.rate.abs());
+            for (x, e) in nodal.x.iter_mut().zip(elapsed) {
+                *x += (0.5 * h * e * h * e * acceleration).clamp(-most, most);
             }
         }
         nodal
@@ -259,13 +262,13 @@ impl<'a> Contact<'a> {
             _ => solved(self.guess(kind, h))?,
         };
         let [x_series, rate_series] = [&nodal.x, &nodal.rate].map(|values| tables.coefficients(&values[..tables.p]));
-        self.hint = Some(Hint { kind, start: self.now, h, x_series, rate_series });
+        self.hint = Some(Hint { kind, start: self.now, h, x_series: x_series.clone(), rate_series });
         let f_series = tables.coefficients(&nodal.force);
         let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
         let terms = self.level.abs() + self.touch.closing * (self.now + h);
         let noise = 1e-15 * terms * nodal.stiffness * h;
         let allowed = (self.settings.tolerance * self.touch.closing).max(noise).max(f64::MIN_POSITIVE);
-        Ok(Trial { kind, h, nodal, f_series, unresolved: tail * h / allowed })
+        Ok(Trial { kind, h, nodal, x_series, f_series, unresolved: tail * h / allowed })
     }
 
     /// The first boundary that a panel meets.
@@ -328,10 +331,9 @@ impl<'a> Contact<'a> {
 
     /// Adds a panel to the record.
     fn take(&mut self, trial: Trial) {
-        let Trial { kind, h, mut nodal, f_series, .. } = trial;
+        let Trial { kind, h, mut nodal, x_series, f_series, .. } = trial;
         let tables = self.kernel.tables;
         let (x_end, rate_end) = (nodal.x.pop().unwrap_or(self.x), nodal.rate.pop().unwrap_or(self.rate));
-        let x_series = tables.coefficients(&nodal.x);
         let (found, falling) = turns(tables, kind, &x_series, self.falling);
         for (fraction, compression, minimum) in found {
             self.turns.push(Turn { after: self.now + fraction * h, compression, minimum });

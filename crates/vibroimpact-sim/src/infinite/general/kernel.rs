@@ -75,27 +75,15 @@ impl Kernel {
         }
     }
 
-    /// Adds what an impulse adds to compression and rate at times after its `age`, but for the displacement that it causes at once,
-    /// to their sums.
+    /// Adds the after-effect of an impulse on compression and rate, at times after its `age`, to their sums. The displacement that it
+    /// causes at once is not part of it.
     pub fn add_after_effect(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
-        let Impulse { age, weight } = impulse;
         for &(c, power) in self.terms.iter().filter(|term| term.1 > 0.0) {
-            let sums = memory.iter_mut().zip(slope.iter_mut()).zip(after);
-            if power == 0.5 {
-                // without a branch, for the vector units
-                for ((memory, slope), tau) in sums {
-                    let t = age + tau;
-                    let value = weight * (c * t.sqrt());
-                    *memory += value;
-                    *slope += 0.5 * value / t;
-                }
-                continue;
-            }
-            for ((memory, slope), tau) in sums {
-                let t = age + tau;
-                let value = weight * (c * t.powf(power));
-                *memory += value;
-                *slope += power * value / t;
+            let sums = (&mut *memory, &mut *slope);
+            match power {
+                // without a branch in the loop, for the vector units
+                0.5 => add_power(impulse, (c, power), f64::sqrt, after, sums),
+                _ => add_power(impulse, (c, power), |t| t.powf(power), after, sums),
             }
         }
     }
@@ -147,6 +135,22 @@ impl Kernel {
             (of(power), slope)
         };
         Weights { linear: of(1.0), impulse: of(0.0), memory: self.terms.iter().map(memory).collect() }
+    }
+}
+
+/// Adds `weight c t^power` and its rate at times after the impulse to their sums; `raise` computes the power.
+fn add_power(
+    Impulse { age, weight }: Impulse,
+    (c, power): (f64, f64),
+    raise: impl Fn(f64) -> f64,
+    after: &[f64],
+    (memory, slope): (&mut [f64], &mut [f64]),
+) {
+    for ((memory, slope), tau) in memory.iter_mut().zip(slope).zip(after) {
+        let t = age + tau;
+        let value = weight * (c * raise(t));
+        *memory += value;
+        *slope += power * value / t;
     }
 }
 

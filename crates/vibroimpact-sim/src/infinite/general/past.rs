@@ -82,19 +82,18 @@ impl Solved {
 /// During a contact, impulses that are much older than it lasts act as a smooth function, sampled once.
 #[derive(Debug, Clone)]
 pub(in crate::infinite) struct FreeMotion {
-    terms: Vec<Bend>,
-    during: Option<During>,
+    near: Vec<Bend>,
+    far: Option<Far>,
 }
 
-/// The bend over the first time of a contact.
+/// The bend by far impulses.
 #[derive(Debug, Clone)]
-struct During {
-    /// End of that time.
+struct Far {
+    terms: Vec<Bend>,
+    /// End of the time for which there are series.
     reach: f64,
-    /// Impulses that are not much older.
-    near: Vec<Bend>,
-    /// Legendre series of `bend / tau^2` and its rate over `tau` by those that are.
-    far: [Vec<f64>; 2],
+    /// Legendre series of `bend / tau^2` and of its rate over `tau`.
+    series: [Vec<f64>; 2],
 }
 
 /// What one term of the kernel, one that bends, makes of the impulses.
@@ -108,38 +107,21 @@ enum Bend {
 
 impl FreeMotion {
     pub fn new(kernel: &Kernel, history: &History) -> FreeMotion {
-        FreeMotion { terms: bends(kernel, history.impulses()), during: None }
+        FreeMotion { near: bends(kernel, history.impulses()), far: None }
     }
 
     /// The same for a contact, most of which happens up to `reach`.
     pub fn during_contact(kernel: &Kernel, history: &History, reach: f64) -> FreeMotion {
-        // the series of n terms errs by 9.9^(-n)
         let is_far = |impulse: &Impulse| impulse.age >= 2.0 * reach;
-        let far = bends(kernel, history.impulses().filter(is_far));
-        let (of_bend, of_rate): (Vec<f64>, Vec<f64>) = kernel
-            .tables
-            .sigma
-            .iter()
-            .map(|s| {
-                let tau = reach * s;
-                let (bend, rate) = sum(&far, tau);
-                (bend / (tau * tau), rate / tau)
-            })
-            .unzip();
         let near = bends(kernel, history.impulses().filter(|impulse| !is_far(impulse)));
-        let far = [of_bend, of_rate].map(|values| kernel.tables.coefficients(&values));
-        FreeMotion { during: Some(During { reach, near, far }), ..FreeMotion::new(kernel, history) }
+        FreeMotion { near, far: Some(Far::new(kernel, bends(kernel, history.impulses().filter(is_far)), reach)) }
     }
 
     /// The bend and its rate.
     pub fn bend(&self, tau: f64) -> (f64, f64) {
-        match &self.during {
-            Some(During { reach, near, far: [of_bend, of_rate] }) if tau <= *reach => {
-                let (bend, rate) = sum(near, tau);
-                (bend + tau * tau * series(of_bend, tau / reach), rate + tau * series(of_rate, tau / reach))
-            }
-            _ => sum(&self.terms, tau),
-        }
+        let (bend, rate) = sum(&self.near, tau);
+        let (far_bend, far_rate) = self.far.as_ref().map_or((0.0, 0.0), |far| far.bend(tau));
+        (bend + far_bend, rate + far_rate)
     }
 
     /// Speed of the struck point at the origin of time.
@@ -148,7 +130,30 @@ impl FreeMotion {
             Bend::Root(c, free) => c * free.structure_speed(),
             Bend::Power(power, impulses) => impulses.iter().map(|(age, size)| power * size / age).sum(),
         };
-        self.terms.iter().map(speed).sum()
+        let far = self.far.iter().flat_map(|far| &far.terms);
+        self.near.iter().chain(far).map(speed).sum()
+    }
+}
+
+impl Far {
+    fn new(kernel: &Kernel, terms: Vec<Bend>, reach: f64) -> Far {
+        let sample = |s: &f64| {
+            let tau = reach * s;
+            let (bend, rate) = sum(&terms, tau);
+            (bend / (tau * tau), rate / tau)
+        };
+        let (of_bend, of_rate): (Vec<f64>, Vec<f64>) = kernel.tables.sigma.iter().map(sample).unzip();
+        let series = [of_bend, of_rate].map(|values| kernel.tables.coefficients(&values));
+        Far { terms, reach, series }
+    }
+
+    /// The bend and its rate.
+    fn bend(&self, tau: f64) -> (f64, f64) {
+        if tau > self.reach {
+            return sum(&self.terms, tau);
+        }
+        let [of_bend, of_rate] = self.series.each_ref().map(|of| series(of, tau / self.reach));
+        (tau * tau * of_bend, tau * of_rate)
     }
 }
 
