@@ -368,8 +368,8 @@ impl Changes {
 
     /// Derivatives with their uncertainty from the coarser motion; `by_impulse` are restitution and final velocity per impulse.
     ///
-    /// Two motions agree in some numbers by accident. A difference therefore counts for all later outputs of the same kind as well,
-    /// since the error of a motion persists, and the largest one of an impulse counts for restitution and velocity.
+    /// Two motions agree in some numbers by accident. As the error of a motion persists, a difference counts for all later outputs of
+    /// the same kind as well. The largest difference of an impulse counts for restitution and velocity.
     fn beside(&self, coarse: Option<&Changes>, solution: &Solution, known: Known, by_impulse: [f64; 2]) -> Derivatives {
         // the largest difference so far
         let mut largest = Largest::default();
