@@ -485,6 +485,12 @@ fn bad_input_is_refused_by_name() {
             "bad.csv, line 3, time_s = 0.0 is not allowed; it must be a time after that of the line above",
         ),
         ("location,force_file\ntip,short.csv\n", stiffness, "short.csv, number of samples = 1 is not allowed"),
+        (
+            "location,force_file\ntip,noise.csv\n",
+            stiffness,
+            "noise.csv, column force_n_sd = 1 column is not allowed; it must be left out: a force history has the columns \
+             time_s and force_n only, and its noise is stated in the column force_n_sd beside force_file",
+        ),
     ] {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in [
@@ -493,6 +499,7 @@ fn bad_input_is_refused_by_name() {
             ("force.csv", "time_s,force_n\n0,0\n1,1\n2,1\n3,1\n4,1\n5,1\n6,1\n7,0\n"),
             ("bad.csv", "time_s,force_n\n0,0\n0,1\n"),
             ("short.csv", "time_s,force_n\n0,0\n"),
+            ("noise.csv", "time_s,force_n,force_n_sd\n0,0,2\n1,1,2\n2,1,2\n3,1,2\n4,1,2\n5,1,2\n6,1,2\n7,0,2\n"),
         ] {
             fs::write(folder.path().join(name), text).unwrap();
         }

@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 10_000;
 pub(super) const FORCE_FILE: &str = "force_file";
 /// The name of the measured force, in whose column of standard deviations its noise is stated.
 pub(super) const FORCE: &str = "force_n";
-const SD: &str = "_sd";
+pub(super) const SD: &str = "_sd";
 
 const NEEDED: &str = "a table of comma-separated values whose line of names contains fields of the scene and what was \
                       measured: quantities, their standard deviations (restitution_sd and so on), or force_file";

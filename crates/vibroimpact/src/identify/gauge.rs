@@ -5,6 +5,7 @@ use fitting::chi_square_tail;
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::History;
 
+use super::data::{FORCE, FORCE_FILE, SD};
 use crate::input::{Row, Table};
 use crate::scene::json::number;
 
@@ -36,7 +37,7 @@ impl ForceRecord {
     /// Reads a history from the bytes of a file.
     ///
     /// # Errors
-    /// Other columns, times that are not ascending, too few samples or too many.
+    /// Missing or further columns, times that are not ascending, too few samples or too many.
     ///
     /// ```
     /// use vibroimpact::identify::ForceRecord;
@@ -46,11 +47,19 @@ impl ForceRecord {
     pub fn parse(file: &str, bytes: &[u8]) -> Result<ForceRecord, InvalidInput> {
         let read = || -> Result<ForceRecord, InvalidInput> {
             let table = Table::parse(bytes, NEEDED)?;
+            // a column that is passed over, such as one of standard deviations, would be taken for one that counts
+            if let Some(other) = table.header.iter().find(|name| !["time_s", FORCE].contains(name)) {
+                let allowed = format!(
+                    "left out: a force history has the columns time_s and {FORCE} only, and its noise is stated in the \
+                     column {FORCE}{SD} beside {FORCE_FILE} in the table of measurements"
+                );
+                return Err(InvalidInput::new(format!("column {other}"), "1 column", allowed));
+            }
             let column = |name: &str| -> Result<Vec<f64>, InvalidInput> {
                 let place = table.needed_column(name, NEEDED)?;
                 table.rows.iter().map(|row: &Row| row.number(place, name)).collect()
             };
-            let (time_s, force_n) = (column("time_s")?, column("force_n")?);
+            let (time_s, force_n) = (column("time_s")?, column(FORCE)?);
             if let Some(i) = (1..time_s.len()).find(|&i| time_s[i] <= time_s[i - 1]) {
                 let fault = InvalidInput::new("time_s", number(time_s[i]), "a time after that of the line above");
                 return Err(table.rows[i].fault(fault));
