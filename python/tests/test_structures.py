@@ -344,3 +344,134 @@ def test_masses_and_damping_that_no_structure_has_are_refused():
             structures.from_matrices(k, mass, {"tip": 1}, 1)
     with pytest.raises(ValueError, match=r"damping_ratios = -1.0 is not allowed; it must be 0 or a positive number"):
         structures.from_matrices(k, np.eye(2), {"tip": 1}, 1, damping_ratios=-1)
+
+
+# A hammer test of two points, with two modes in the band and one above it.
+OMEGA = 2 * math.pi * np.array([30.0, 110.0, 420.0])
+DAMPING = np.array([0.01, 0.006, 0.008])
+SHAPES = {"tip": np.array([1.2, 0.8, 1.1]), "end": np.array([0.5, -0.9, 0.7])}
+PLACES = {"tip": (7, 3), "end": (4, 2)}
+EVEN = 1.0 + 0.25 * np.arange(800)
+
+
+def function_58(response="end", force="tip", kind=12, lines=EVEN, even=True, scale=1.0, signs=(1, 1), cut=0, **fields):
+    """A frequency response of this test as data set 58, in double precision, without the help of pyuff."""
+    omega = 2 * math.pi * lines
+    pole_terms = OMEGA**2 - omega[:, None] ** 2 + 2j * DAMPING * OMEGA * omega[:, None]
+    receptance = (SHAPES[response] * SHAPES[force] / pole_terms).sum(axis=1)
+    values = scale * signs[0] * signs[1] * receptance * (1j * omega) ** {8: 0, 11: 1}.get(kind, 2)
+    stated = {"function": 4, "load": 0, "data": 6, "count": len(lines), "abscissa": 18, "denominator": 13, "label": "NONE"} | fields
+    (node, axis), (at, along) = PLACES[response], PLACES[force]
+    first, spacing = (lines[0], lines[1] - lines[0]) if even else (0.0, 0.0)
+    head = [
+        "    -1", "    58", *["NONE"] * 5,
+        f"{stated['function']:5d}{0:10d}{0:5d}{stated['load']:10d} {'NONE':10s}{node:10d}{signs[0] * axis:4d}"
+        f" {'NONE':10s}{at:10d}{signs[1] * along:4d}",
+        f"{stated['data']:10d}{stated['count']:10d}{int(even):10d}{first:13.5e}{spacing:13.5e}{0:13.5e}",
+        *(
+            f"{number:10d}{0:5d}{0:5d}{0:5d} {'NONE':20s} {label:20s}"
+            for number, label in ((stated["abscissa"], "Hz"), (kind, stated["label"]), (stated["denominator"], "NONE"), (0, "NONE"))
+        ),
+    ]
+    if even:
+        numbers = [f"{part:20.12e}" for value in values for part in (value.real, value.imag)]
+        body = ["".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4)]
+    else:
+        body = [f"{x:13.5e}{value.real:20.12e}{value.imag:20.12e}" for x, value in zip(lines, values, strict=True)]
+    return "\n".join([*head, *(body[:-cut] if cut else body), "    -1", ""])
+
+
+def units_164(code, length, force):
+    """The data set of units: numbers of the file are those in SI times the factors."""
+    factors = f"{length:25.16e}{force:25.16e}{1:25.16e}\n{0:25.16e}".replace("e", "D")
+    return f"    -1\n   164\n{code:10d}{'units':20s}{1:10d}\n{factors}\n    -1\n"
+
+
+def assert_is_the_test(path):
+    found = structures.from_universal(path, PLACES, "tip", 2)
+    assert found.omega_rad_s == pytest.approx(OMEGA[:2], rel=1e-5)
+    assert found.damping_ratios == pytest.approx(DAMPING[:2], rel=1e-3)
+    for name, shape in SHAPES.items():
+        assert found.shapes[name] == pytest.approx(shape[:2], rel=1e-3)
+    exact = float((SHAPES["tip"] ** 2 / OMEGA**2).sum())
+    assert found.static_compliances_m_n["tip"] == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        # The hammer stays, or roves while the accelerometer stays; displacement, velocity or acceleration over force.
+        function_58("tip") + function_58("end", "tip"),
+        function_58("tip", kind=8) + function_58("tip", "end", kind=11),
+        function_58("tip", signs=(-1, 1)) + function_58("tip", "end", signs=(1, -1)),
+        # Both, among others that are not needed.
+        function_58("end", "end", denominator=0) + function_58("tip") + function_58("end") + function_58("tip", "end", function=6),
+        # Inch and pound, millimetre and millinewton, units of the user.
+        units_164(7, 39.37008, 0.2248089) + "".join(function_58(p, scale=39.37008 / 0.2248089, label="in/s^2") for p in PLACES),
+        units_164(5, 1e3, 1e3) + "".join(function_58(p, label="mm/s^2/mN") for p in PLACES),
+        units_164(9, 100.0, 1e-3) + "".join(function_58(p, scale=1e5) for p in PLACES),
+        # Uneven lines: closer around the first mode, and of one ratio.
+        "".join(
+            function_58(p, lines=np.sort(np.concatenate([np.arange(1.0, 200.0, 0.5), np.arange(29.01, 31.0, 0.04)])), even=False)
+            for p in PLACES
+        ),
+        "".join(function_58(p, lines=np.array([float(f"{x:.5e}") for x in np.geomspace(3, 200, 1500)]), even=False) for p in PLACES),
+    ],
+)
+def test_a_hammer_test_is_read_in_each_of_its_forms(text, tmp_path):
+    pytest.importorskip("pyuff")
+    (tmp_path / "test.uff").write_text(text)
+    assert_is_the_test(tmp_path / "test.uff")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (function_58("tip") + function_58(cut=30), "data set 2: number of values = 740 is not allowed; it must be 800"),
+        (function_58("tip") + function_58()[:-4000], "is not a whole universal file"),
+        (function_58("tip")[:-7] + function_58(), "is not a whole universal file: it has 3 lines -1"),
+        (function_58("tip")[:-7] + function_58() + function_58("end", "end")[:-7], "data set 2: type = none"),
+        (function_58("tip") + function_58(count=801), "data set 2: number of values = 800 is not allowed; it must be 801"),
+        (function_58("tip") + function_58(denominator=12), "data set 2: kind of the denominator = 12 .* 13: excitation force"),
+        (function_58("tip") + function_58(denominator=0), "data set 2: kind of the denominator = 0"),
+        (function_58("tip", kind=13) + function_58(), "data set 1: kind of the ordinate = 13 .* 8, 11 or 12"),
+        (function_58("tip") + function_58(abscissa=19), "data set 2: kind of the abscissa = 19 .* 18: frequency"),
+        (function_58("tip") + function_58(load=2), "data set 2: load case = 2"),
+        (function_58("tip") + function_58(data=4, count=1600), "data set 2: data type of the ordinate = 4 .* complex"),
+        (function_58("tip") + function_58() + function_58(), "data set 3: a response of .* the only one, and data set 2 is one"),
+        (function_58("tip") + function_58(function=3), r"contains no response of \['end'\] to a force at tip, nor the reverse"),
+        (function_58("tip") + function_58(lines=EVEN + 0.1), "data sets 1 and 2 have different frequencies"),
+        (function_58("tip", lines=EVEN[::-1], even=False) + function_58(), "data set 1: frequencies = not ascending"),
+        (function_58("tip", label="g/N") + function_58(), "data set 1: unit of the ordinate = 'g/N' .* SI"),
+        (units_164(5, 1e3, 1e3) + function_58("tip", label="m/s^2") + function_58(), "data set 2: unit of the ordinate = 'm/s\\^2'"),
+        (units_164(1, 3.28, 0.2248) + function_58("tip") + function_58(), "data set 1: factors of length and force .* code of units 1"),
+        (units_164(9, 0.0, 1.0) + function_58("tip") + function_58(), "data set 1: factors .* positive"),
+        (function_58("tip") + units_164(5, 1e3, 1e3) + function_58(), "data set 2: place of the units"),
+        (units_164(1, 1, 1) + units_164(5, 1e3, 1e3) + function_58("tip") + function_58(), "data set 2: factors .* before it"),
+    ],
+)
+def test_a_hammer_test_that_cannot_be_read_is_refused_by_name(text, told, tmp_path):
+    pytest.importorskip("pyuff")
+    (tmp_path / "test.uff").write_text(text)
+    with pytest.raises(ValueError, match=f"test.uff.*{told}"):
+        structures.from_universal(tmp_path / "test.uff", PLACES, "tip", 2)
+
+
+def test_modes_that_do_not_describe_a_hammer_test_are_refused(tmp_path):
+    pytest.importorskip("pyuff")
+    file = tmp_path / "test.uff"
+    file.write_text(function_58("tip") + function_58())
+    with pytest.raises(ValueError, match="the responses show more than 1 modes, such as one near (30|110) Hz"):
+        structures.from_universal(file, PLACES, "tip", 1)
+    with pytest.raises(ValueError, match="point end = .* a direction, 1, 2 or 3"):
+        structures.from_universal(file, PLACES | {"end": (4, 6)}, "tip", 2)
+    # A sensor that changes during the test.
+    noisy = np.random.default_rng(1)
+    text = function_58()
+    head, body = text.split("\n")[:13], text.split("\n")[13:-2]
+    rows = [np.array([float(row[20 * k : 20 * k + 20]) for k in range(4)]) for row in body]
+    drift = np.repeat(1 + 0.5 * noisy.standard_normal(len(rows) // 20), 20)
+    body = ["".join(f"{value:20.12e}" for value in share * row) for share, row in zip(drift, rows, strict=True)]
+    file.write_text(function_58("tip") + "\n".join([*head, *body, "    -1", ""]))
+    with pytest.raises(ValueError, match="2 modes do not describe the responses: the misfit is"):
+        structures.from_universal(file, PLACES, "tip", 2)
