@@ -50,6 +50,7 @@ def nastran():
     return structures.from_nastran(
         folder / "cantilever.op2", {name: (grid, UP) for name, grid in grids.items()},
         {name: folder / f"cantilever-{name}.op2" for name in grids},
+        modal_masses=1.0,
     )
 
 
@@ -331,7 +332,7 @@ def test_unsolvable_or_unreadable_input_is_reported():
     pytest.importorskip("pyNastran")
     folder = FILES / "nastran"
     with pytest.raises(ValueError, match="grid point 99"):
-        structures.from_nastran(folder / "cantilever.op2", {"tip": (99, UP)})
+        structures.from_nastran(folder / "cantilever.op2", {"tip": (99, UP)}, modal_masses=1.0)
     with pytest.raises(ValueError, match="no eigenvectors"):
         structures.from_nastran(folder / "cantilever-tip.op2", {"tip": (21, UP)})
 
@@ -475,3 +476,114 @@ def test_modes_that_do_not_describe_a_hammer_test_are_refused(tmp_path):
     file.write_text(function_58("tip") + "\n".join([*head, *body, "    -1", ""]))
     with pytest.raises(ValueError, match="2 modes do not describe the responses: the misfit is"):
         structures.from_universal(file, PLACES, "tip", 2)
+
+
+TIP = {"tip": (21, UP)}
+
+
+class Op2:
+    """The records of an .op2 file with results, which are changed here as other jobs would write them."""
+
+    def __init__(self, name):
+        content, self.records = (FILES / "nastran" / name).read_bytes(), []
+        while content:
+            length = int.from_bytes(content[:4], "little")
+            self.records.append(content[4 : 4 + length])
+            content = content[8 + length :]
+        # The label of the tape, then tables that begin with their name and end with three marks, and the end of the file.
+        self.label, self.tables = self.records[:8], self.records[8:-1]
+
+    def changed(self, subcase=1, factor=1.0):
+        """The tables as those of another subcase with other displacements."""
+        tables = []
+        for record in self.tables:
+            if len(record) == 584:
+                record = record[:12] + subcase.to_bytes(4, "little") + record[16:]
+            elif len(record) == 672:
+                # 21 grid points: identity, kind, three translations and three rotations
+                rows = np.frombuffer(record, dtype="<f4").reshape(-1, 8).copy()
+                rows[:, 2:] *= factor
+                record = rows.tobytes()
+            tables.append(record)
+        return tables
+
+    def eigenvalues(self, masses):
+        """Nastran's table of eigenvalues, which MYSTRAN does not write."""
+        heads = [record for record in self.tables if len(record) == 584]
+        values = [float(np.frombuffer(head, dtype="<f4")[5]) for head in heads]
+        rows = b"".join(
+            np.array([k, k], dtype="<i4").tobytes()
+            + np.array([value, value**0.5, value**0.5 / (2 * math.pi), mass, mass * value], dtype="<f4").tobytes()
+            for k, (value, mass) in enumerate(zip(values, masses, strict=True), start=1)
+        )
+        head = np.zeros(146, dtype="<i4")
+        # real eigenvalues (6) of the approach of modes (2)
+        head[:2], head[3], head[9] = (21, 6), 1, 7
+        # title, subtitle and label: blanks
+        head[50:] = 0x20202020
+        content = [b"LAMA    ", -1, 7, bytes(28), -2, 1, 0, 7, bytes(28), -3, 1, 0, 146, head.tobytes(), -4, 1, 0, len(rows) // 4, rows]
+        marks = [2, *content, -5, 1, 0, 0]
+        return [mark if isinstance(mark, bytes) else mark.to_bytes(4, "little", signed=True) for mark in marks]
+
+    def write(self, path, *tables):
+        written = [*self.label, *(record for table in tables for record in table), self.records[-1]]
+        path.write_bytes(b"".join(len(r).to_bytes(4, "little") + r + len(r).to_bytes(4, "little") for r in written))
+        return path
+
+
+def test_shapes_of_nastran_are_scaled_by_their_generalised_masses(tmp_path):
+    pytest.importorskip("pyNastran")
+    modes, exact = Op2("cantilever.op2"), nastran()
+    # Shapes of the largest displacement 1, as by NORM=MAX: their generalised mass is that of the factors, squared.
+    factor = 0.37
+    masses = [factor**2] * 8
+    file = modes.write(tmp_path / "modes.op2", modes.eigenvalues(masses), modes.changed(factor=factor))
+    assert structures.from_nastran(file, TIP).shapes["tip"] == pytest.approx(exact.shapes["tip"], rel=1e-5)
+    with pytest.raises(ValueError, match="modal_masses = 1.0 is not allowed; it must be left out"):
+        structures.from_nastran(file, TIP, modal_masses=1.0)
+    # The table is missing, or is that of other modes.
+    other = [record.replace(np.float32(4.39940742e04).tobytes(), np.float32(5e4).tobytes()) for record in modes.eigenvalues(masses)]
+    for tables in ([], other):
+        file = modes.write(tmp_path / "modes.op2", tables, modes.changed(factor=factor))
+        with pytest.raises(ValueError, match="modes.op2 contains no table of eigenvalues .* state modal_masses, 1 if"):
+            structures.from_nastran(file, TIP)
+        found = structures.from_nastran(file, TIP, modal_masses=masses)
+        assert found.shapes["tip"] == pytest.approx(exact.shapes["tip"], rel=1e-5)
+    for wrong, told in (([1.0], "modal_masses = 1 numbers"), (0.0, "modal_masses = 0.0")):
+        with pytest.raises(ValueError, match=told):
+            structures.from_nastran(file, TIP, modal_masses=wrong)
+    file = modes.write(tmp_path / "modes.op2", modes.eigenvalues([0.0] * 8), modes.changed())
+    with pytest.raises(ValueError, match="modes.op2: generalised mass = 0.0"):
+        structures.from_nastran(file, TIP)
+
+
+def test_subcases_of_nastran_are_chosen_by_name(tmp_path):
+    pytest.importorskip("pyNastran")
+    modes, static, exact = Op2("cantilever.op2"), Op2("cantilever-tip.op2"), nastran()
+    two_modes = modes.write(tmp_path / "modes.op2", modes.changed(subcase=3, factor=2.0), modes.changed(subcase=4))
+    two_loads = static.write(tmp_path / "static.op2", static.changed(subcase=1, factor=2.5), static.changed(subcase=2))
+    with pytest.raises(ValueError, match=r"modes.op2 contains 2 results, of the subcases \['3.*'4.*state one by subcase=NUMBER"):
+        structures.from_nastran(two_modes, TIP, modal_masses=1.0)
+    with pytest.raises(ValueError, match=r"subcase = 1 is not allowed; it must be one of \[3, 4\]"):
+        structures.from_nastran(two_modes, TIP, subcase=1, modal_masses=1.0)
+    with pytest.raises(ValueError, match="static.op2 contains 2 results, .*state one by static={'tip': "):
+        structures.from_nastran(two_modes, TIP, {"tip": two_loads}, subcase=4, modal_masses=1.0)
+    found = structures.from_nastran(two_modes, TIP, {"tip": (two_loads, 2)}, subcase=4, modal_masses=1.0)
+    assert np.array_equal(found.shapes["tip"], exact.shapes["tip"])
+    assert found.static_compliances_m_n["tip"] == exact.static_compliances_m_n["tip"]
+
+
+def test_files_of_nastran_that_are_cut_off_or_not_loaded_are_refused(tmp_path):
+    pytest.importorskip("pyNastran")
+    modes, static = Op2("cantilever.op2"), Op2("cantilever-tip.op2")
+    content = modes.write(tmp_path / "modes.op2", modes.changed()).read_bytes()
+    for length in (0, 100, len(content) // 3, len(content) // 2, len(content) - 20):
+        (tmp_path / "cut.op2").write_bytes(content[:length])
+        with pytest.raises(ValueError, match="cut.op2 cannot be read; it must be a whole .op2 file: is it cut off?"):
+            structures.from_nastran(tmp_path / "cut.op2", TIP, modal_masses=1.0)
+    with pytest.raises(FileNotFoundError, match="none.op2"):
+        structures.from_nastran(tmp_path / "none.op2", TIP)
+    for factor, force, told in ((0.0, 1.0, "displacement of tip along its direction = 0.0"), (1.0, 0.0, "force = 0.0"), (1.0, -1.0, "sign of the force")):
+        still = static.write(tmp_path / "still.op2", static.changed(factor=factor))
+        with pytest.raises(ValueError, match=told):
+            structures.from_nastran(tmp_path / "modes.op2", TIP, {"tip": still}, modal_masses=1.0, force=force)

@@ -205,3 +205,15 @@ def units(length_m: float, mass_kg: float) -> tuple[float, float]:
             raise ValueError(f"{name} = {value} is not allowed; it must be a finite number greater than 0")
     # A shape is 1/sqrt(mass); a compliance is length/force = s^2/mass.
     return mass_kg**-0.5, 1.0 / mass_kg
+
+
+def compliance(path: str | PathLike[str], name: str, displacement: float, force: float) -> float:
+    """The compliance of a point that a static load has moved along its direction."""
+    if not (math.isfinite(force) and force != 0.0):
+        raise ValueError(f"force = {force} is not allowed; it must be a finite number other than 0")
+    if not displacement / force > 0.0:
+        raise ValueError(
+            f"{fspath(path)}: the displacement of {name} along its direction = {displacement} is not allowed; it must have the sign of "
+            f"the force, {force}: is the point loaded in this file, along its direction?"
+        )
+    return displacement / force
