@@ -109,7 +109,7 @@ def test_a_free_structure_has_the_compliance_of_its_elastic_modes():
     # Three masses in a row on two springs: the modes are known.
     k, m = 1e5, 0.5
     stiffness = k * np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
-    found = structures.from_matrices(stiffness, m * np.eye(3), {"end": 0}, 2)
+    found = structures.from_matrices(stiffness, m * np.eye(3), {"end": 0}, 2, rigid_modes=1)
     assert found.omega_rad_s[0] == 0.0
     assert found.omega_rad_s[1] == pytest.approx(math.sqrt(k / m), rel=1e-10)
     # Elastic modes (1, 0, -1)/sqrt 2 and (1, -2, 1)/sqrt 6 with k/m and 3 k/m.
@@ -147,17 +147,20 @@ def test_rigid_body_modes_are_told_by_the_rounding_of_the_matrices():
         assert clamped.omega_rad_s[0] == pytest.approx(209.988, rel=1e-5)
         assert clamped.static_compliances_m_n["tip"] == pytest.approx(0.5**3 / (3 * 350), rel=1e-4)
         k, m = hermite_beam(elements, fixed=False)
-        free = structures.from_matrices(k, m, {"end": 0}, 6)
+        free = structures.from_matrices(k, m, {"end": 0}, 6, rigid_modes=2)
         assert list(free.omega_rad_s[:2]) == [0, 0]
         assert free.omega_rad_s[2] == pytest.approx(1336.21, rel=1e-5)
         assert free.static_compliances_m_n["end"] == pytest.approx(0.5**3 / (105 * 350), rel=1e-4)
     # Entries with five digits: the rigid-body modes are lost in their rounding, unless that is stated.
     rounded = np.vectorize(lambda value: float(f"{value:.4e}"))
     k, m = (rounded(matrix) for matrix in hermite_beam(7, fixed=False))
-    told = structures.from_matrices(k, m, {"end": 0}, 6, rounding=1e-5)
+    told = structures.from_matrices(k, m, {"end": 0}, 6, rigid_modes=2, rounding=1e-5)
     assert list(told.omega_rad_s[:2]) == [0, 0] and told.omega_rad_s[2] == pytest.approx(1336.2, rel=1e-2)
-    with pytest.raises(ValueError, match="count = 2 is not allowed; it must be more than the 2 rigid-body modes"):
-        structures.from_matrices(k, m, {"end": 0}, 2, rounding=1e-5)
+    with pytest.raises(ValueError, match="rigid_modes = 2 is not allowed; it must be from 0 to 1, less than the count"):
+        structures.from_matrices(k, m, {"end": 0}, 2, rigid_modes=2, rounding=1e-5)
+    for stated in (0, 1, 3):
+        with pytest.raises(ValueError, match=f"rigid_modes = {stated} is not allowed; it must be 2, the number of eigenvalues"):
+            structures.from_matrices(k, m, {"end": 0}, 6, rigid_modes=stated, rounding=1e-5)
     with pytest.raises(ValueError, match="rounding = 0"):
         structures.from_matrices(k, m, {"end": 0}, 2, rounding=0)
 
@@ -319,7 +322,7 @@ def test_unsolvable_or_unreadable_input_is_reported():
         structures.from_matrices(np.triu(np.ones((3, 3))), eye, {"p": 0}, 1)
     with pytest.raises(ValueError, match="point p = 3"):
         structures.from_matrices(eye, eye, {"p": 3}, 1)
-    with pytest.raises(ValueError, match="unstable"):
+    with pytest.raises(ValueError, match="stiffness is not allowed; it must be without negative eigenvalues"):
         structures.from_matrices(np.diag([-1.0, 1, 2]), eye, {"p": 0}, 2)
     pytest.importorskip("pyuff")
     file = FILES / "universal" / "cantilever.uff"
@@ -340,9 +343,10 @@ def test_unsolvable_or_unreadable_input_is_reported():
 def test_masses_and_damping_that_no_structure_has_are_refused():
     pytest.importorskip("scipy")
     k = np.array([[2.0, -1.0], [-1.0, 1.0]])
-    for mass in (-np.eye(2), np.diag([1.0, 0.0])):
-        with pytest.raises(ValueError, match="count = 1 is not allowed; it must be a number of modes that stiffness and mass have"):
-            structures.from_matrices(k, mass, {"tip": 1}, 1)
+    with pytest.raises(ValueError, match="mass is not allowed; it must be without negative eigenvalues"):
+        structures.from_matrices(k, -np.eye(2), {"tip": 1}, 1)
+    with pytest.raises(ValueError, match="count = 1 is not allowed; it must be a number of modes that stiffness and mass have"):
+        structures.from_matrices(k, np.diag([1.0, 0.0]), {"tip": 1}, 1)
     with pytest.raises(ValueError, match=r"damping_ratios = -1.0 is not allowed; it must be 0 or a positive number"):
         structures.from_matrices(k, np.eye(2), {"tip": 1}, 1, damping_ratios=-1)
 
@@ -587,3 +591,46 @@ def test_files_of_nastran_that_are_cut_off_or_not_loaded_are_refused(tmp_path):
         still = static.write(tmp_path / "still.op2", static.changed(factor=factor))
         with pytest.raises(ValueError, match=told):
             structures.from_nastran(tmp_path / "modes.op2", TIP, {"tip": still}, modal_masses=1.0, force=force)
+
+
+def chain(springs, masses):
+    """Masses in a row, the first on a spring to the ground, which may be 0."""
+    k = np.diag(np.asarray(springs, dtype=float))
+    for i, spring in enumerate(springs[1:]):
+        k[i, i] += spring
+        k[i, i + 1] -= spring
+        k[i + 1, i] -= spring
+    return k, np.diag(np.asarray(masses, dtype=float))
+
+
+def test_matrices_that_no_structure_has_are_refused():
+    pytest.importorskip("scipy")
+    k, m = chain([1e5] * 30, [0.5] * 30)
+    exact = structures.from_matrices(k, m, {"p": 29}, 3)
+    # Far from the lowest modes, where the eigenvalues that are computed do not show it.
+    for place in (0, 12, 29):
+        for name, pair in (("stiffness", (k - 9e5 * np.diag(np.arange(30) == place), m)), ("mass", (k, m - 9 * np.diag(np.arange(30) == place)))):
+            with pytest.raises(ValueError, match=f"{name} is not allowed; it must be without negative eigenvalues"):
+                structures.from_matrices(*pair, {"p": 29}, 3)
+    # Structural damping as an imaginary part.
+    with pytest.raises(ValueError, match="stiffness is not allowed; it must be a matrix of real numbers"):
+        structures.from_matrices(k * (1 + 0.02j), m, {"p": 29}, 3)
+    assert np.array_equal(structures.from_matrices(k + 0j, m, {"p": 29}, 3).omega_rad_s, exact.omega_rad_s)
+    # Modes below the shift would be left out.
+    with pytest.raises(ValueError, match="shift = 5000.0 is not allowed; it must be less than the lowest eigenvalue"):
+        structures.from_matrices(k, m, {"p": 29}, 3, shift=5e3)
+    assert structures.from_matrices(k, m, {"p": 29}, 3, shift=100.0).omega_rad_s == pytest.approx(exact.omega_rad_s)
+
+
+def test_a_soft_support_beside_a_stiff_part_is_not_lost():
+    pytest.importorskip("scipy")
+    # A ground spring of 1 N/m below a stiff link is lost in the sum of both, or a share of it is.
+    with pytest.raises(ValueError, match="their rounding changes it by up to"):
+        structures.from_matrices(*chain([1.0, 1e14, 1.0], [1, 1, 1]), {"p": 1}, 1)
+    for link in (1e16, 1e20):
+        with pytest.raises(ValueError, match="rigid_modes = 0 is not allowed; it must be 1, .* a soft spring is lost"):
+            structures.from_matrices(*chain([1.0, link], [1, 1]), {"p": 1}, 1)
+    for link, accuracy in ((1e6, 1e-5), (1e12, 5e-3)):
+        found = structures.from_matrices(*chain([1.0, link], [1, 1]), {"p": 1}, 1)
+        assert found.omega_rad_s[0] == pytest.approx(math.sqrt(0.5), rel=accuracy)
+        assert found.static_compliances_m_n["p"] == pytest.approx(1.0, rel=accuracy)

@@ -1,11 +1,15 @@
 """Modes and static compliances from stiffness and mass matrices.
 
-With ``K`` and ``M`` the pencil ``K x = omega^2 M x`` is solved for its lowest modes by Lanczos' method with a shift
-(scipy's ``eigsh``), and the eigenvalue of each vector is its Rayleigh quotient ``x^T K x``. The rounding of the entries
-of ``K`` by a share ``e`` changes that by at most ``e |x|^T |K| |x|``; a mode whose eigenvalue is of this size is one of a rigid
-body. The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``. For a structure that moves freely, it is
-that of the elastic modes alone: the load is balanced by inertia, ``g = f - M R R^T f`` with the mass-normalised rigid-body
-modes ``R``, and the solution of ``K x + M R y = g`` is the one with ``R^T M x = 0``.
+With ``K`` and ``M`` the pencil ``K x = omega^2 M x`` is solved for its lowest modes by Lanczos' method with a shift (scipy's
+``eigsh``), and the eigenvalue of each vector is its Rayleigh quotient ``x^T K x``. The rounding of the entries of ``K`` by a
+share ``e`` changes that by at most ``b = e |x|^T |K| |x|``. An eigenvalue of up to ``4 b`` is zero within rounding. It may be
+that of a rigid body, or of a soft spring that is lost in the rounding of a stiff one; the matrices do not tell, so that the
+number of rigid-body modes is stated. The other eigenvalues must be at least ``100 b``, so that frequencies are certain to 0.5
+%. No eigenvalue may be negative: ``K`` and ``M`` are positive semidefinite if they can be factorised after every diagonal
+entry is increased by ``4 e`` times the sum of the absolute values of its row. The static compliance at a point with the load
+vector ``f`` is ``f^T K^-1 f``. For a structure that moves freely, it is that of the elastic modes alone: the load is balanced
+by inertia, ``g = f - M R R^T f`` with the mass-normalised rigid-body modes ``R``, and the solution of ``K x + M R y = g`` is
+the one with ``R^T M x = 0``.
 """
 
 from __future__ import annotations
@@ -21,6 +25,8 @@ from ._structure import Floats, Structure, units
 
 # Eigenvalues of rigid-body modes are below this multiple of the effect of rounding: sums of rounded entries are rounded as well.
 _RIGID = 4.0
+# Eigenvalues of elastic modes are at least this multiple of it.
+_ELASTIC = 100.0
 
 
 def from_matrices(
@@ -29,19 +35,20 @@ def from_matrices(
     points: Mapping[str, int | ArrayLike],
     count: int,
     *,
+    rigid_modes: int = 0,
     damping_ratios: Sequence[float] | float | None = None,
     shift: float | None = None,
     rounding: float = float(np.finfo(np.float64).eps),
     length_m: float = 1.0,
     mass_kg: float = 1.0,
 ) -> Structure:
-    """Computes the ``count`` lowest modes.
+    """Computes the ``count`` lowest modes, of which the first ``rigid_modes`` are those of a structure that can move freely.
 
-    ``stiffness`` and ``mass`` are Matrix Market files or scipy.sparse matrices, symmetric, without the fixed degrees of freedom.
-    ``points`` gives, for each point that may be struck, its degree of freedom (from 0) or a vector of weights over all
+    ``stiffness`` and ``mass`` are Matrix Market files or scipy.sparse matrices, real and symmetric, without the fixed degrees of
+    freedom. ``points`` gives, for each point that may be struck, its degree of freedom (from 0) or a vector of weights over all
     of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those to be computed. The default is slightly negative, so that
     the matrix of a structure that moves freely can be factorised. ``rounding`` is the relative rounding of the entries of the
-    stiffness matrix, which distinguishes rigid-body modes from elastic ones: 1e-7 for a file with seven digits.
+    stiffness matrix, 1e-7 for a file with seven digits: what is zero within it is not taken for an elastic mode.
     """
     from scipy.sparse import bmat, csc_array
     from scipy.sparse.linalg import ArpackError, eigsh, splu
@@ -52,10 +59,16 @@ def from_matrices(
         raise ValueError(f"mass = {m.shape} is not allowed; it must be as large as the stiffness matrix, {k.shape}")
     if not 0 < count < size:
         raise ValueError(f"count = {count} is not allowed; it must be from 1 to {size - 1}, one less than the number of degrees of freedom")
+    if not 0 <= rigid_modes < count:
+        raise ValueError(f"rigid_modes = {rigid_modes} is not allowed; it must be from 0 to {count - 1}, less than the count of modes")
     if not 0.0 < rounding < 1.0:
         raise ValueError(f"rounding = {rounding} is not allowed; it must be a number between 0 and 1")
     shape_factor, compliance_factor = units(length_m, mass_kg)
     loads = {name: _load(name, point, size) for name, point in points.items()}
+    _refuse_negative("stiffness", k, rounding)
+    _refuse_negative("mass", m, float(np.finfo(np.float64).eps))
+    if shift is not None and not _factorises(k - shift * m):
+        raise ValueError(f"shift = {shift} is not allowed; it must be less than the lowest eigenvalue")
     if shift is None:
         # This is far below any elastic mode of a reasonable mesh, but above rounding.
         shift = -1e-9 * float(abs(k.diagonal()).sum() / abs(m.diagonal()).sum())
@@ -73,14 +86,25 @@ def from_matrices(
     order = np.argsort(eigenvalues)
     eigenvalues, vectors = eigenvalues[order], vectors[:, order]
     rounded = rounding * np.einsum("ij,ij->j", abs(vectors), abs(k) @ abs(vectors))
-    rigid = np.abs(eigenvalues) <= _RIGID * rounded
-    if np.any(eigenvalues[~rigid] < 0.0):
+    zero = np.abs(eigenvalues) <= _RIGID * rounded
+    if np.any(eigenvalues[~zero] < 0.0):
         raise ValueError(
             f"stiffness is not allowed; it must be without negative eigenvalues, and {eigenvalues.min()} makes the structure unstable "
             "(if the entries have few digits, state their rounding)"
         )
-    if rigid.all():
-        raise ValueError(f"count = {count} is not allowed; it must be more than the {count} rigid-body modes that were found")
+    rigid = np.arange(count) < rigid_modes
+    if np.any(zero != rigid):
+        raise ValueError(
+            f"rigid_modes = {rigid_modes} is not allowed; it must be {np.count_nonzero(zero)}, the number of eigenvalues that are zero "
+            "within the rounding of the stiffness matrix, if the structure can move freely; if it cannot, a soft spring is lost in the "
+            "rounding of a stiff one: make the stiff parts less stiff or rigid"
+        )
+    uncertain = ~rigid & (eigenvalues < _ELASTIC * rounded)
+    if np.any(uncertain):
+        raise ValueError(
+            f"stiffness is not allowed; it must have entries from which the eigenvalue {eigenvalues[uncertain][0]} can be computed, "
+            f"and their rounding changes it by up to {rounded[uncertain][0]}: make the stiff parts less stiff or rigid, or write more digits"
+        )
     modes = vectors[:, rigid]
     moved = csc_array(m @ modes)
     factors = splu(bmat([[k, moved], [moved.T, None]], format="csc") if rigid.any() else k.tocsc())
@@ -105,6 +129,11 @@ def _matrix(name: str, given: Any) -> Any:
     from scipy.sparse import csr_array
 
     matrix = csr_array(mmread(given) if isinstance(given, (str, PathLike)) else given)
+    if np.iscomplexobj(matrix.data):
+        if np.any(matrix.data.imag != 0.0):
+            raise ValueError(f"{name} is not allowed; it must be a matrix of real numbers: state damping by damping_ratios")
+        matrix = matrix.real
+    matrix = matrix.astype(np.float64)
     if matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"{name} = {matrix.shape} is not allowed; it must be a square matrix")
     if not np.all(np.isfinite(matrix.data)):
@@ -112,6 +141,32 @@ def _matrix(name: str, given: Any) -> Any:
     if abs(matrix - matrix.T).max() > 1e-9 * abs(matrix).max():
         raise ValueError(f"{name} is not allowed; it must be a symmetric matrix")
     return matrix
+
+
+def _refuse_negative(name: str, matrix: Any, rounding: float) -> None:
+    """A matrix with negative eigenvalues beyond the rounding of its entries is not that of a structure."""
+    from scipy.sparse import diags_array
+
+    rows = np.asarray(abs(matrix).sum(axis=1)).ravel()
+    # Degrees of freedom without any mass.
+    used = np.flatnonzero(rows > 0.0)
+    raised = (matrix + diags_array(_RIGID * rounding * rows)).tocsr()[used][:, used]
+    if used.size and not _factorises(raised):
+        raise ValueError(
+            f"{name} is not allowed; it must be without negative eigenvalues beyond the rounding of its entries, a share of {rounding:.3g} "
+            "(if the stiffness has few digits, state its rounding)"
+        )
+
+
+def _factorises(matrix: Any) -> bool:
+    """Whether a symmetric matrix is positive definite: elimination without exchange of rows then has positive pivots."""
+    from scipy.sparse.linalg import splu
+
+    try:
+        factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:  # a pivot that is exactly 0
+        return False
+    return bool(np.array_equal(factors.perm_r, factors.perm_c) and np.all(factors.U.diagonal() > 0.0))
 
 
 def _load(name: str, point: int | ArrayLike, size: int) -> Floats:
