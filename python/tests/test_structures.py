@@ -634,3 +634,47 @@ def test_a_soft_support_beside_a_stiff_part_is_not_lost():
         found = structures.from_matrices(*chain([1.0, link], [1, 1]), {"p": 1}, 1)
         assert found.omega_rad_s[0] == pytest.approx(math.sqrt(0.5), rel=accuracy)
         assert found.static_compliances_m_n["p"] == pytest.approx(1.0, rel=accuracy)
+
+
+def test_files_of_calculix_that_are_not_whole_or_belong_to_other_jobs_are_refused(tmp_path):
+    folder = FILES / "calculix"
+    dat, frd, static = ((folder / name).read_text() for name in ("cantilever.dat", "cantilever.frd", "cantilever-tip.frd"))
+    points = {"tip": (293, UP)}
+
+    def read(static_force=1.0, **changed):
+        texts = {"modes.dat": dat, "modes.frd": frd, "static.frd": static} | {k.replace("_", "."): v for k, v in changed.items()}
+        for name, text in texts.items():
+            (tmp_path / name).write_text(text)
+        return structures.from_calculix(
+            tmp_path / "modes.dat", tmp_path / "modes.frd", points, {"tip": tmp_path / "static.frd"}, force=static_force
+        )
+
+    assert np.array_equal(read().shapes["tip"], calculix().shapes["tip"])
+    # Cut off at any place: within a number, at the end of a line, before the last line.
+    last = frd.rindex(" -1       293")
+    for place in (0, 1000, last, last + 20, last + 47, len(frd) - 6):
+        with pytest.raises(ValueError, match="modes.frd is not a whole .frd file"):
+            read(modes_frd=frd[:place])
+    with pytest.raises(ValueError, match="static.frd is not a whole .frd file"):
+        read(static_frd=static[: static.rindex(" -3")])
+    with pytest.raises(ValueError, match="modes.frd contains 8 shapes, and .*modes.dat 5 frequencies"):
+        read(modes_dat=dat[: dat.index("      6   0.2649663E+09")])
+    # A line that is lost or damaged within the file.
+    row = next(line for line in frd[last:].splitlines() if line.startswith(" -1       293"))
+    with pytest.raises(ValueError, match="modes.frd, line .*: 1 displacements are not allowed; there must be 2"):
+        read(modes_frd=frd.replace(row + "\n", ""))
+    with pytest.raises(ValueError, match="modes.frd, line .*: could not convert"):
+        read(modes_frd=frd.replace(row, row[:30]))
+    with pytest.raises(ValueError, match="modes.frd, line .*: format 2 of its results"):
+        read(modes_frd=frd.replace("1MODAL      1", "1MODAL      2"))
+    with pytest.raises(ValueError, match=r"modes.frd: the eigenvalue of mode 2 = 1747766.0 is not allowed; it must be 1847766.0"):
+        read(modes_dat=dat.replace("0.1747766E+07", "0.1847766E+07"))
+    # A load of 0, or of the other sign.
+    still = "\n".join(line[:13] + 3 * " 0.00000E+00" if line.startswith(" -1       293") else line for line in static.split("\n"))
+    with pytest.raises(ValueError, match="static.frd: the displacement of tip along its direction = 0.0 .* is the point loaded"):
+        read(static_frd=still)
+    for force, told in ((0.0, "force = 0.0 is not allowed"), (-1.0, "must have the sign of the force, -1.0")):
+        with pytest.raises(ValueError, match=told):
+            read(static_force=force)
+    with pytest.raises(ValueError, match="node 7 is not in .* write it with OUTPUT=2D"):
+        structures.from_calculix(folder / "cantilever.dat", folder / "cantilever.frd", {"tip": (7, UP)})

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
 
 import numpy as np
 
-from ._structure import Floats, Structure, direction, frequencies, units
+from ._structure import Floats, Structure, compliance, direction, frequencies, units
 
 _NUMBER = r"[-+]?\d\.\d+E[-+]\d+"
+# Relative difference of the eigenvalues of a mode in two files, which have six and seven digits.
+_SAME = 2e-5
+# The format of an ASCII file with ten digits for a node.
+_LONG = 1
+
+
+@dataclass
+class _Block:
+    """Displacements node by node; of a mode with its number and its eigenvalue."""
+
+    mode: int | None
+    eigenvalue: float | None
+    nodes: dict[int, Floats]
 
 
 def from_calculix(
@@ -30,32 +45,39 @@ def from_calculix(
     Steps before it, such as a static preload, are passed over. ``points`` gives the node and the direction of each point that
     may be struck, ``{"tip": (293, (0, 0, 1))}``. ``static`` names, for points whose compliance is needed, the ``.frd`` of a
     job with one linear ``*STATIC`` step that loads the point by ``force`` along its direction. CalculiX writes displacements
-    to the ASCII ``.frd`` with six digits; its shapes are mass-normalised.
+    to the ASCII ``.frd`` with six digits; its shapes are mass-normalised. Nodes of shells and beams have their own numbers
+    only with ``OUTPUT=2D``; without it they are expanded to solids with other nodes.
     """
     shape_factor, compliance_factor = units(length_m, mass_kg)
     # A structure that carries a static load is supported.
-    omega = frequencies(dat, _eigenvalues(Path(dat)), supported=bool(static))
+    eigenvalues = _eigenvalues(Path(dat))
+    omega = frequencies(dat, eigenvalues, supported=bool(static))
     nodes = {name: (node, direction(name, along)) for name, (node, along) in points.items()}
     # A job may contain steps before that of the modes, such as a static preload.
-    written = [(mode, block) for mode, block in _displacements(Path(frd)) if mode is not None]
-    if [mode for mode, _ in written] != list(range(1, len(omega) + 1)):
+    blocks = [block for block in _displacements(Path(frd)) if block.mode is not None]
+    if [block.mode for block in blocks] != list(range(1, len(omega) + 1)):
         raise ValueError(
-            f"{fspath(frd)} contains {len(written)} shapes, and {fspath(dat)} {len(omega)} frequencies: "
+            f"{fspath(frd)} contains {len(blocks)} shapes, and {fspath(dat)} {len(omega)} frequencies: "
             "a job with one *FREQUENCY step, which writes U for every mode"
         )
-    blocks = [block for _, block in written]
+    for block, value in zip(blocks, eigenvalues, strict=True):
+        if block.eigenvalue is not None and not math.isclose(block.eigenvalue, value, rel_tol=_SAME):
+            raise ValueError(
+                f"{fspath(frd)}: the eigenvalue of mode {block.mode} = {block.eigenvalue} is not allowed; it must be {value}, that in "
+                f"{fspath(dat)}: are both files of the same job?"
+            )
     shapes = {name: [_at(block, node, frd) @ along for block in blocks] for name, (node, along) in nodes.items()}
     compliances = {}
     for name, file in (static or {}).items():
         if name not in nodes:
             raise ValueError(f"static {name!r} is not allowed; it must be one of the points {list(nodes)}")
         node, along = nodes[name]
-        loaded = [block for mode, block in _displacements(Path(file)) if mode is None]
+        loaded = [block for block in _displacements(Path(file)) if block.mode is None]
         if len(loaded) != 1:
             raise ValueError(
                 f"{fspath(file)} contains {len(loaded)} static displacements: a job with one linear *STATIC step, which writes U"
             )
-        compliances[name] = float(_at(loaded[0], node, file) @ along) / force * compliance_factor
+        compliances[name] = compliance(file, name, float(_at(loaded[0], node, file) @ along), force) * compliance_factor
     damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
     return Structure(
         omega_rad_s=omega,
@@ -65,10 +87,13 @@ def from_calculix(
     )
 
 
-def _at(block: dict[int, Floats], node: int, file: str | PathLike[str]) -> Floats:
-    if node not in block:
-        raise ValueError(f"node {node} is not in {file}: add it to the NSET of *NODE FILE")
-    return block[node]
+def _at(block: _Block, node: int, file: str | PathLike[str]) -> Floats:
+    if node not in block.nodes:
+        raise ValueError(
+            f"node {node} is not in {fspath(file)}: add it to the NSET of *NODE FILE; if it belongs to a shell or a beam, write it with "
+            "OUTPUT=2D"
+        )
+    return block.nodes[node]
 
 
 def _eigenvalues(path: Path) -> Floats:
@@ -80,23 +105,38 @@ def _eigenvalues(path: Path) -> Floats:
     return np.asarray(eigenvalues)
 
 
-def _displacements(path: Path) -> list[tuple[int | None, dict[int, Floats]]]:
-    """The blocks ``DISP`` of an ASCII ``.frd``, node by node, in their fixed columns; each with its number if it is a mode."""
-    blocks: list[tuple[int | None, dict[int, Floats]]] = []
-    block: dict[int, Floats] | None = None
+def _displacements(path: Path) -> list[_Block]:
+    """The blocks ``DISP`` of an ASCII ``.frd``, in its fixed columns."""
+    blocks: list[_Block] = []
+    nodes: dict[int, Floats] | None = None
     mode: int | None = None
-    with path.open(encoding="ascii", errors="replace") as file:
-        for line in file:
+    eigenvalue: float | None = None
+    stated = 0
+    lines = path.read_text(encoding="ascii", errors="replace").splitlines()
+    if not lines or lines[-1].strip() != "9999":
+        raise ValueError(f"{path} is not a whole .frd file: it must end with the line 9999; is it cut off, or is the job still running?")
+    for number, line in enumerate(lines, start=1):
+        try:
             if line.startswith("    1PSTEP"):
-                mode = None
+                mode = eigenvalue = None
             elif line.startswith("    1PMODE"):
                 mode = int(line.split()[1])
+            elif line.startswith("    1PGK"):
+                eigenvalue = float(line.split()[1])
+            elif line.startswith("  100C"):
+                stated, kind = int(line[24:36]), int(line[73:75])
+                if kind != _LONG:
+                    raise ValueError(f"format {kind} of its results is not allowed; it must be {_LONG}, text with long node numbers")
             elif line.startswith(" -4"):
-                block = {} if line[5:].startswith("DISP") else None
-                if block is not None:
-                    blocks.append((mode, block))
+                nodes = {} if line[5:].startswith("DISP") else None
+                if nodes is not None:
+                    blocks.append(_Block(mode, eigenvalue if mode is not None else None, nodes))
             elif line.startswith(" -3"):
-                block = None
-            elif block is not None and line.startswith(" -1"):
-                block[int(line[3:13])] = np.array([float(line[13 + 12 * k : 25 + 12 * k]) for k in range(3)])
+                if nodes is not None and len(nodes) != stated:
+                    raise ValueError(f"{len(nodes)} displacements are not allowed; there must be {stated}, as their head states")
+                nodes = None
+            elif nodes is not None and line.startswith(" -1"):
+                nodes[int(line[3:13])] = np.array([float(line[13 + 12 * k : 25 + 12 * k]) for k in range(3)])
+        except (ValueError, IndexError) as error:
+            raise ValueError(f"{path}, line {number}: {error}") from error
     return blocks
