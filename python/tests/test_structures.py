@@ -288,6 +288,10 @@ def test_a_sweep_takes_many_measured_modes(tmp_path):
         ("frequency_hz,tip,tip_sd\n1,1,-1\n", "column tip_sd = -1.0"),
         ("frequency_hz,tip\n-1,1\n", "omega_rad_s = -6.28"),
         ("frequency_hz\n1\n", "at least one named point"),
+        ("frequency_hz,modal_mass_kg\n1,1\n", "at least one named point"),
+        ("frequency_hz,modal_mass_kg,tip\n1,0,1\n", "column modal_mass_kg = 0.0 is not allowed; it must be a positive number"),
+        ("frequency_hz,modal_mass_kg,tip\n1,nan,1\n", "row 2, modal_mass_kg = 'nan'"),
+        ("frequency_hz,modal_mass_kg_sd,tip\n1,1,1\n", "column modal_mass_kg_sd is not allowed; it must be beside"),
     ],
 )
 def test_tables_that_cannot_be_used_are_refused_by_name(text, told, tmp_path):
@@ -678,3 +682,29 @@ def test_files_of_calculix_that_are_not_whole_or_belong_to_other_jobs_are_refuse
             read(static_force=force)
     with pytest.raises(ValueError, match="node 7 is not in .* write it with OUTPUT=2D"):
         structures.from_calculix(folder / "cantilever.dat", folder / "cantilever.frd", {"tip": (7, UP)})
+
+
+def test_shapes_of_a_table_are_scaled_to_unit_modal_masses(tmp_path):
+    (tmp_path / "normalised.csv").write_text(
+        "frequency_hz,damping_ratio,tip,tip_sd,middle\n33.4,0.004,2.0,0.03,0.75\n209.4,0.005,-2.0,0.04,1.5\n"
+    )
+    # The same shapes, 1 at the tip.
+    (tmp_path / "masses.csv").write_text(
+        "frequency_hz,damping_ratio,modal_mass_kg,tip,tip_sd,middle\n33.4,0.004,0.25,1,0.015,0.375\n209.4,0.005,0.25,-1,0.02,0.75\n"
+    )
+    exact, found = (structures.from_table(tmp_path / name, {"tip": 1e-3}) for name in ("normalised.csv", "masses.csv"))
+    for name, shape in exact.shapes.items():
+        assert found.shapes[name] == pytest.approx(shape)
+    assert found.standard_deviations["points.tip.shape"] == pytest.approx(exact.standard_deviations["points.tip.shape"])
+    assert "points.middle.shape" not in found.standard_deviations
+    # An impact on either is the same.
+    scene = own_beam(0.5) | {"location": "tip"}
+    del scene["location_m"]
+    one, two = (vibroimpact.simulate(scene | {"structure": structure.modal()}) for structure in (exact, found))
+    assert one["restitution"] == pytest.approx(two["restitution"], rel=1e-9)
+    # A modal mass of 0.25 +- 0.02 kg: 4 % of the shapes.
+    text = (tmp_path / "masses.csv").read_text().replace("tip_sd,middle", "tip_sd,middle,modal_mass_kg_sd")
+    (tmp_path / "uncertain.csv").write_text("\n".join(row + ("" if row.startswith("f") else ",0.02") for row in text.splitlines()))
+    found = structures.from_table(tmp_path / "uncertain.csv")
+    assert found.standard_deviations["points.tip.shape"] == pytest.approx(np.hypot([0.03, 0.04], 0.08))
+    assert found.standard_deviations["points.middle.shape"] == pytest.approx([0.03, 0.06])

@@ -13,13 +13,16 @@ import numpy as np
 from ._structure import Floats, Structure
 
 _SD = "_sd"
+_MASS = "modal_mass_kg"
 
 
 def from_table(path: str | PathLike[str], static_compliances_m_n: Mapping[str, float] | None = None) -> Structure:
     """Reads modes from a table with the columns of a ``modes-file`` and, if they are known, their standard deviations.
 
-    The columns are ``frequency_hz`` or ``omega_rad_s``, ``damping_ratio``, and shapes at points (mass-normalised); a column
-    ``NAME_sd`` contains the standard deviations of ``NAME``.
+    The columns are ``frequency_hz`` or ``omega_rad_s``, ``damping_ratio``, ``modal_mass_kg``, and shapes at points; a column
+    ``NAME_sd`` contains the standard deviations of ``NAME``. Shapes are mass-normalised (kg^-1/2), or normalised to the modal
+    masses if the table has them: they are then divided by the square roots of these, so that the structure has unit modal masses. The
+    standard deviation of a modal mass increases those of the shapes of its mode.
     """
     columns = _columns(Path(path))
     frequencies = [name for name in ("omega_rad_s", "frequency_hz") if name in columns]
@@ -33,18 +36,24 @@ def from_table(path: str | PathLike[str], static_compliances_m_n: Mapping[str, f
             raise ValueError(f"{path}: column {name} is not allowed; it must be beside the column {name.removesuffix(_SD)}")
         if np.any(spreads[name] < 0.0):
             raise ValueError(f"{path}: column {name} = {spreads[name].min()} is not allowed; it must be 0 or a positive number")
-    points = [name for name in columns if name not in spreads and name not in (frequency, "damping_ratio")]
+    points = [name for name in columns if name not in spreads and name not in (frequency, "damping_ratio", _MASS)]
+    masses = columns.get(_MASS, np.ones_like(columns[frequency]))
+    if np.any(masses <= 0.0):
+        raise ValueError(f"{path}: column {_MASS} = {masses.min()} is not allowed; it must be a positive number")
+    shapes = {name: columns[name] / np.sqrt(masses) for name in points}
     deviations = {}
-    for name, key, scale in [
-        (frequency, "omega_rad_s", factor),
-        ("damping_ratio", "damping_ratios", 1.0),
-        *((point, f"points.{point}.shape", 1.0) for point in points),
-    ]:
+    for name, key, scale in [(frequency, "omega_rad_s", factor), ("damping_ratio", "damping_ratios", 1.0)]:
         if name + _SD in spreads:
             deviations[key] = scale * spreads[name + _SD]
+    for name in points:
+        if name + _SD in spreads or _MASS + _SD in spreads:
+            own = spreads.get(name + _SD, np.zeros_like(masses)) / np.sqrt(masses)
+            # A shape is in proportion to the mass to the power of -1/2.
+            by_mass = 0.5 * shapes[name] * spreads.get(_MASS + _SD, np.zeros_like(masses)) / masses
+            deviations[f"points.{name}.shape"] = np.hypot(own, by_mass)
     return Structure(
         omega_rad_s=factor * columns[frequency],
-        shapes={name: columns[name] for name in points},
+        shapes=shapes,
         damping_ratios=columns.get("damping_ratio"),
         static_compliances_m_n=dict(static_compliances_m_n or {}),
         standard_deviations=deviations,
