@@ -363,11 +363,11 @@ PLACES = {"tip": (7, 3), "end": (4, 2)}
 EVEN = 1.0 + 0.25 * np.arange(800)
 
 
-def function_58(response="end", force="tip", kind=12, lines=EVEN, even=True, scale=1.0, signs=(1, 1), cut=0, **fields):
+def function_58(response="end", force="tip", kind=12, lines=EVEN, even=True, scale=1.0, signs=(1, 1), cut=0, rigid=0.0, **fields):
     """A frequency response of this test as data set 58, in double precision, without the help of pyuff."""
     omega = 2 * math.pi * lines
     pole_terms = OMEGA**2 - omega[:, None] ** 2 + 2j * DAMPING * OMEGA * omega[:, None]
-    receptance = (SHAPES[response] * SHAPES[force] / pole_terms).sum(axis=1)
+    receptance = (SHAPES[response] * SHAPES[force] / pole_terms).sum(axis=1) - rigid / omega**2
     values = scale * signs[0] * signs[1] * receptance * (1j * omega) ** {8: 0, 11: 1}.get(kind, 2)
     stated = {"function": 4, "load": 0, "data": 6, "count": len(lines), "abscissa": 18, "denominator": 13, "label": "NONE"} | fields
     (node, axis), (at, along) = PLACES[response], PLACES[force]
@@ -464,6 +464,21 @@ def test_a_hammer_test_that_cannot_be_read_is_refused_by_name(text, told, tmp_pa
     (tmp_path / "test.uff").write_text(text)
     with pytest.raises(ValueError, match=f"test.uff.*{told}"):
         structures.from_universal(tmp_path / "test.uff", PLACES, "tip", 2)
+
+
+def test_motion_below_the_band_is_that_of_a_free_structure_or_refused(tmp_path):
+    pytest.importorskip("pyuff")
+    file = tmp_path / "test.uff"
+    # The rigid-body motion of a structure of 2 kg.
+    file.write_text(function_58("tip", rigid=0.5) + function_58("end", rigid=0.5))
+    with pytest.raises(ValueError, match="the response at tip shows motion below 1 Hz, .* or state free=True"):
+        structures.from_universal(file, PLACES, "tip", 2)
+    found = structures.from_universal(file, PLACES, "tip", 2, free=True)
+    assert found.static_compliances_m_n["tip"] == pytest.approx(float((SHAPES["tip"] ** 2 / OMEGA**2).sum()), rel=1e-3)
+    # The lowest mode is below the band.
+    file.write_text(function_58("tip") + function_58("end"))
+    with pytest.raises(ValueError, match="the response at tip shows motion below 60 Hz, .* begin below the lowest mode"):
+        structures.from_universal(file, PLACES, "tip", 1, band_hz=(60, 200))
 
 
 def test_modes_that_do_not_describe_a_hammer_test_are_refused(tmp_path):

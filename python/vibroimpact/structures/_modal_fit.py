@@ -8,7 +8,8 @@ above the band,
 First estimates of the poles come from all responses together by the eigensystem realisation algorithm (Juang and Pappa 1985) on
 their impulse responses, with more poles than requested. Those that describe the responses best are selected, each response weighted by
 its own size, and refined by least squares; residues and residual terms are linear parameters and are eliminated (variable
-projection). Where a mode is so close outside the band that residual terms do not describe it, a pole outside the band is added.
+projection). Where a mode is so close above the band that residual terms do not describe it, a pole above the band is added. What is
+below the band remains a residual term, by which a structure that moves there is known.
 
 Standard deviations follow from the residuals of the fit. A misfit of the model is correlated from line to line, and counts accordingly:
 if ``r_l`` is the correlation over ``l`` lines, there are as many independent values as lines over ``1 + 2 sum r_l``.
@@ -37,17 +38,21 @@ _MOST_LINES = 1 << 16
 _MORE_POLES = (4, 12, 28)
 # A column of which less than this share is left beside others, as a share of its square, depends on them.
 _DEPENDENT = 1e-10
-# Rounds of exchange of selected poles, and poles added outside the band.
+# Rounds of exchange of selected poles, and poles added above the band.
 _ROUNDS = 4
-_MOST_OUTSIDE = 3
-# Where poles outside the band are sought, relative to its ends, and their damping ratio.
-_OUTSIDE = (1.02, 1.05, 1.1, 1.2, 1.4, 2.0)
-_OUTSIDE_DAMPING = 0.01
+_MOST_ABOVE = 3
+# Where poles above the band are sought, relative to its end, and their damping ratio.
+_ABOVE = np.array([1.02, 1.05, 1.1, 1.2, 1.4, 2.0])
+_ABOVE_DAMPING = 0.01
 # The misfit, relative to the responses, that is correlated from line to line: above the first a further mode is sought, which must
 # reduce the sum of squares to the share; above the second the fit is no description of the responses.
 _NOTICED_MISFIT = 0.01
 _FURTHER_MODE = 0.25
 _MOST_MISFIT = 0.1
+# Most steps of a search, which takes about ten from a good start; a step costs an evaluation for each parameter.
+_MOST_STEPS = 20
+# Largest logarithm of a frequency or a damping ratio.
+_FARTHEST = 50.0
 # Relative change for derivatives of residues with respect to poles.
 _CHANGE = 1e-6
 
@@ -62,8 +67,11 @@ class ModalFit:
     damping_sd: Floats
     residues: Floats
     residues_sd: Floats
-    # The static compliance of everything that is not among the modes: residual terms and poles outside the band.
-    remaining_compliance: Floats
+    # The static compliance of what is above the band: residual terms and poles.
+    upper_compliance: Floats
+    # What moves below the band: its part of the receptance at the lowest frequency, with the sign of a compliance.
+    lower_motion: Floats
+    lower_motion_sd: Floats
 
 
 def fit(omega: Floats, responses: Complex, count: int) -> ModalFit:
@@ -76,8 +84,8 @@ def fit(omega: Floats, responses: Complex, count: int) -> ModalFit:
         raise ValueError(f"the responses show {candidates.size} modes, not {count}: request fewer, or state another band")
     chosen = _selected(omega, responses, candidates, count)
     u = _refined(omega, responses, _parameters(chosen))
-    for _ in range(_MOST_OUTSIDE):
-        wider = _with_pole_outside(omega, responses, u)
+    for _ in range(_MOST_ABOVE):
+        wider = _with_pole_above(omega, responses, u, count)
         if wider is None:
             break
         u = wider
@@ -110,22 +118,22 @@ def _finished(omega: Floats, responses: Complex, u: Floats, rest: Floats, count:
     outside = np.setdiff1d(np.arange(poles.size), inside)
     terms, conditional = _terms(omega, responses, poles)
     jacobian = np.empty((rest.size, u.size))
-    slopes = np.empty((*terms[:, : poles.size].shape, u.size))
+    slopes = np.empty((*terms.shape, u.size))
     for k in range(u.size):
         step = np.zeros(u.size)
         step[k] = _CHANGE
         ahead, behind = _poles(u + step), _poles(u - step)
         jacobian[:, k] = (_rest(omega, responses, ahead) - _rest(omega, responses, behind)).ravel() / (2.0 * _CHANGE)
-        change = _terms(omega, responses, ahead)[0] - _terms(omega, responses, behind)[0]
-        slopes[..., k] = change[:, : poles.size] / (2.0 * _CHANGE)
+        slopes[..., k] = (_terms(omega, responses, ahead)[0] - _terms(omega, responses, behind)[0]) / (2.0 * _CHANGE)
     # Residues and residual terms have been eliminated, but count as parameters.
     freedom = max(rest.size - u.size - responses.shape[0] * (poles.size + _RESIDUAL_TERMS), 1)
     stretch = _dependent_lines(rest)
     covariance = np.linalg.pinv(jacobian.T @ jacobian) * float(np.sum(rest**2)) / freedom * stretch
     relative = np.sqrt(np.diag(covariance))
     of_poles = np.einsum("ijk,kl,ijl->ij", slopes, covariance, slopes)
-    scatter = np.sqrt(conditional[:, : poles.size] ** 2 * stretch + of_poles)
-    remaining = terms[:, poles.size] + terms[:, outside] @ (1.0 / frequency[outside] ** 2)
+    scatter = np.sqrt(conditional**2 * stretch + of_poles)
+    # The last residual term is L, relative to the end of the band.
+    lowest = (omega[-1] / omega[0]) ** 2
     return ModalFit(
         frequency=frequency[inside],
         frequency_sd=(relative[: poles.size] * frequency)[inside],
@@ -133,7 +141,9 @@ def _finished(omega: Floats, responses: Complex, u: Floats, rest: Floats, count:
         damping_sd=(relative[poles.size :] * damping)[inside],
         residues=terms[:, inside],
         residues_sd=scatter[:, inside],
-        remaining_compliance=remaining,
+        upper_compliance=terms[:, poles.size] + terms[:, outside] @ (1.0 / frequency[outside] ** 2),
+        lower_motion=-terms[:, -1] * lowest,
+        lower_motion_sd=scatter[:, -1] * lowest,
     )
 
 
@@ -205,14 +215,13 @@ def _best_beside(omega: Floats, responses: Complex, candidates: Complex, known: 
     return complex(candidates[_best(columns, targets, places, candidates.size)])
 
 
-def _with_pole_outside(omega: Floats, responses: Complex, u: Floats) -> Floats | None:
-    """The parameters with one more pole, below or above the band, if the responses show that it is there."""
+def _with_pole_above(omega: Floats, responses: Complex, u: Floats, count: int) -> Floats | None:
+    """The parameters with one more pole, above the band, if the responses show that it is there."""
     known = _poles(u)
-    ends = [omega[-1] * share for share in _OUTSIDE] + [omega[0] / share for share in _OUTSIDE]
-    tried = np.array(ends) * (-_OUTSIDE_DAMPING + 1j)
+    tried = omega[-1] * _ABOVE * (-_ABOVE_DAMPING + 1j)
     wider = _refined(omega, responses, _parameters(np.append(known, _best_beside(omega, responses, tried, known))))
-    added = np.abs(_poles(wider)[-1])
-    if omega[0] <= added <= omega[-1]:
+    # The poles of the modes come first.
+    if np.any(np.abs(_poles(wider)[count:]) <= omega[-1]):
         return None
     # Schwarz's criterion: is the gain worth two parameters of the pole and a residue for each response?
     values = 2 * responses.size
@@ -224,7 +233,8 @@ def _refined(omega: Floats, responses: Complex, start: Floats) -> Floats:
     """The logarithms of frequencies and damping ratios by least squares."""
     from scipy.optimize import least_squares
 
-    found = least_squares(lambda u: _rest(omega, responses, _poles(u)).ravel(), start, x_scale="jac", method="lm")
+    most = _MOST_STEPS * (start.size + 1)
+    found = least_squares(lambda u: _rest(omega, responses, _poles(u)).ravel(), start, x_scale="jac", method="lm", max_nfev=most)
     return np.asarray(found.x, dtype=np.float64)
 
 
@@ -233,7 +243,8 @@ def _parameters(poles: Complex) -> Floats:
 
 
 def _poles(u: Floats) -> Complex:
-    frequency, damping = np.exp(u[: u.size // 2]), np.exp(u[u.size // 2 :])
+    # Steps of the search may lead far away, but not to numbers that overflow.
+    frequency, damping = np.split(np.exp(np.clip(u, -_FARTHEST, _FARTHEST)), 2)
     return np.asarray(frequency * (-damping + 1j * np.sqrt(np.maximum(1.0 - damping**2, 0.0))))
 
 
@@ -256,22 +267,24 @@ def _weighed(omega: Floats, responses: Complex, poles: Complex) -> tuple[Floats,
 def _terms(omega: Floats, responses: Complex, poles: Complex) -> tuple[Floats, Floats]:
     """The best residues and residual terms of each response, and their standard deviations at given poles."""
     solved = [_solved(column, target) for column, target in zip(*_weighed(omega, responses, poles), strict=True)]
-    return np.asarray([terms for terms, _, _ in solved]), np.asarray([spread for _, spread, _ in solved])
+    return np.asarray([terms for terms, _ in solved]), np.asarray([spread for _, spread in solved])
 
 
 def _rest(omega: Floats, responses: Complex, poles: Complex) -> Floats:
     """What the best residues and residual terms leave of each response, relative to its size."""
-    return np.asarray([_solved(column, target)[2] for column, target in zip(*_weighed(omega, responses, poles), strict=True)])
+    columns, targets = _weighed(omega, responses, poles)
+    bases = np.linalg.qr(columns)[0]
+    return np.asarray(targets - np.einsum("ijk,ik->ij", bases, np.einsum("ijk,ij->ik", bases, targets)))
 
 
-def _solved(columns: Floats, target: Floats) -> tuple[Floats, Floats, Floats]:
-    """The least-squares solution, its standard deviations, and the rest."""
+def _solved(columns: Floats, target: Floats) -> tuple[Floats, Floats]:
+    """The least-squares solution and its standard deviations."""
     scale = np.linalg.norm(columns, axis=0)
     inverse = np.linalg.pinv(columns / scale) / scale[:, None]
     solution = inverse @ target
     rest = target - columns @ solution
     variance = float(rest @ rest) / max(rest.size - solution.size, 1)
-    return solution, np.sqrt(variance * (inverse**2).sum(axis=1)), rest
+    return solution, np.sqrt(variance * (inverse**2).sum(axis=1))
 
 
 def _lines(rest: Floats) -> Floats:
