@@ -723,3 +723,29 @@ def test_shapes_of_a_table_are_scaled_to_unit_modal_masses(tmp_path):
     found = structures.from_table(tmp_path / "uncertain.csv")
     assert found.standard_deviations["points.tip.shape"] == pytest.approx(np.hypot([0.03, 0.04], 0.08))
     assert found.standard_deviations["points.middle.shape"] == pytest.approx([0.03, 0.06])
+
+
+def test_static_loads_at_other_points_are_refused(tmp_path):
+    readers = [(structures.from_calculix, ("cantilever.dat", "cantilever.frd"), "calculix", (293, 149), "frd", {})]
+    readers += [(structures.from_nastran, ("cantilever.op2",), "nastran", (21, 11), "op2", {"modal_masses": 1.0})]
+    for reader, modes, folder, nodes, kind, more in readers:
+        if folder == "nastran":
+            pytest.importorskip("pyNastran")
+        inside = FILES / folder
+        points = {name: (node, UP) for name, node in zip(("tip", "middle"), nodes, strict=True)}
+        tip, middle = (inside / f"cantilever-{name}.{kind}" for name in points)
+
+        def read(static, wanted=points, force=1.0):
+            return reader(*(inside / name for name in modes), wanted, static, force=force, **more)
+
+        # The tip is moved less by a load in the middle than by one at the tip, and less than its modes alone would let it move.
+        with pytest.raises(ValueError, match="displacement of tip along its direction = .* must be at least .* that of the listed modes"):
+            read({"tip": middle}, {"tip": points["tip"]})
+        # A load of 2 N that is taken for 1 N is not noticed, nor can it be; one of 0.5 N is.
+        with pytest.raises(ValueError, match="must be at least .* by 2.0"):
+            read({"tip": tip}, force=2.0)
+        # A load at the tip moves the middle more than one in the middle.
+        with pytest.raises(ValueError, match=f"cantilever-tip.{kind}: the displacement of .* is not allowed; it must be"):
+            read({"tip": tip, "middle": tip})
+        exact = read({"tip": tip, "middle": middle}).static_compliances_m_n
+        assert read({"middle": middle}).static_compliances_m_n["middle"] == exact["middle"]

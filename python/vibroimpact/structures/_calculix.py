@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._structure import Floats, Structure, compliance, direction, frequencies, units
+from ._structure import Floats, Structure, direction, frequencies, static_compliances, units
 
 _NUMBER = r"[-+]?\d\.\d+E[-+]\d+"
 # Relative difference of the eigenvalues of a mode in two files, which have six and seven digits.
@@ -66,24 +66,25 @@ def from_calculix(
                 f"{fspath(frd)}: the eigenvalue of mode {block.mode} = {block.eigenvalue} is not allowed; it must be {value}, that in "
                 f"{fspath(dat)}: are both files of the same job?"
             )
-    shapes = {name: [_at(block, node, frd) @ along for block in blocks] for name, (node, along) in nodes.items()}
-    compliances = {}
+    shapes = {name: np.array([_at(block, node, frd) @ along for block in blocks]) for name, (node, along) in nodes.items()}
+    moved: dict[str, dict[str, float]] = {}
     for name, file in (static or {}).items():
         if name not in nodes:
             raise ValueError(f"static {name!r} is not allowed; it must be one of the points {list(nodes)}")
-        node, along = nodes[name]
         loaded = [block for block in _displacements(Path(file)) if block.mode is None]
         if len(loaded) != 1:
             raise ValueError(
                 f"{fspath(file)} contains {len(loaded)} static displacements: a job with one linear *STATIC step, which writes U"
             )
-        compliances[name] = compliance(file, name, float(_at(loaded[0], node, file) @ along), force) * compliance_factor
+        seen = {other: pair for other, pair in nodes.items() if other == name or pair[0] in loaded[0].nodes}
+        moved[name] = {other: float(_at(loaded[0], node, file) @ along) for other, (node, along) in seen.items()}
+    compliances = static_compliances(force, omega, shapes, moved, static or {})
     damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
     return Structure(
         omega_rad_s=omega,
-        shapes={name: np.asarray(shape) * shape_factor for name, shape in shapes.items()},
+        shapes={name: shape * shape_factor for name, shape in shapes.items()},
         damping_ratios=damping,
-        static_compliances_m_n=compliances,
+        static_compliances_m_n={name: value * compliance_factor for name, value in compliances.items()},
     )
 
 

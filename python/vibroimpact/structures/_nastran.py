@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ._structure import Floats, Structure, compliance, direction, frequencies, units
+from ._structure import Floats, Structure, direction, frequencies, static_compliances, units
 
 
 # Eigenvalues of a table and of vectors are the same within this share, and this share of the largest.
@@ -45,23 +45,26 @@ def from_nastran(
     values = np.asarray(vectors.eigns, dtype=np.float64)
     omega = frequencies(op2, values)
     masses = _masses(model, op2, values, modal_masses)
-    shapes = {
-        name: _at(vectors, node, op2) @ along / np.sqrt(masses) * shape_factor for name, (node, along) in nodes.items()
-    }
-    compliances = {}
+    shapes = {name: _at(vectors, node, op2) @ along / np.sqrt(masses) for name, (node, along) in nodes.items()}
+    moved: dict[str, dict[str, float]] = {}
+    files: dict[str, str | PathLike[str]] = {}
     for name, load in (static or {}).items():
         if name not in nodes:
             raise ValueError(f"static {name!r} is not allowed; it must be one of the points {list(nodes)}")
-        node, along = nodes[name]
-        file, case = load if isinstance(load, tuple) else (load, None)
+        files[name], case = load if isinstance(load, tuple) else (load, None)
+        file = files[name]
         loaded = _of_subcase(_read(file).displacements, file, case, "displacements", f"static={{{name!r}: (file, NUMBER)}}")
-        rows = _at(loaded, node, file) @ along
-        if len(rows) != 1:
-            raise ValueError(f"{fspath(file)} contains {len(rows)} displacements of one subcase: one linear static load is needed")
-        compliances[name] = compliance(file, name, float(rows[0]), force) * compliance_factor
+        if len(loaded.data) != 1:
+            raise ValueError(f"{fspath(file)} contains {len(loaded.data)} displacements of one subcase: one linear static load is needed")
+        seen = {other: pair for other, pair in nodes.items() if other == name or pair[0] in loaded.node_gridtype[:, 0]}
+        moved[name] = {other: float(_at(loaded, node, file)[0] @ along) for other, (node, along) in seen.items()}
+    compliances = static_compliances(force, omega, shapes, moved, files)
     damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
     return Structure(
-        omega_rad_s=omega, shapes=shapes, damping_ratios=damping, static_compliances_m_n=compliances
+        omega_rad_s=omega,
+        shapes={name: shape * shape_factor for name, shape in shapes.items()},
+        damping_ratios=damping,
+        static_compliances_m_n={name: value * compliance_factor for name, value in compliances.items()},
     )
 
 

@@ -162,6 +162,8 @@ _GAP = 1e-6
 _MOST_RIGID = 6
 # A negative eigenvalue of at most this share of the lowest positive one is zero to rounding.
 _NEGATIVE = 1e-3
+# Displacements of two files, or those of a file and of its modes, agree within this share of the largest.
+_FROM_FILES = 1e-3
 # The compliance of the listed modes may exceed the stated one by this share.
 _ROUNDING = 1e-9
 
@@ -207,13 +209,42 @@ def units(length_m: float, mass_kg: float) -> tuple[float, float]:
     return mass_kg**-0.5, 1.0 / mass_kg
 
 
-def compliance(path: str | PathLike[str], name: str, displacement: float, force: float) -> float:
-    """The compliance of a point that a static load has moved along its direction."""
+def static_compliances(
+    force: float,
+    omega: Floats,
+    shapes: Mapping[str, Floats],
+    moved: Mapping[str, Mapping[str, float]],
+    files: Mapping[str, str | PathLike[str]],
+) -> dict[str, float]:
+    """Compliances of the points at which static loads act, in the unit of the shapes.
+
+    ``moved`` gives, for each loaded point, the displacement of this point and of others of which the file has it. Loads and modes must
+    belong together: a point moves at least as much as by its listed modes, and two points move each other equally (Maxwell's reciprocity).
+    """
     if not (math.isfinite(force) and force != 0.0):
         raise ValueError(f"force = {force} is not allowed; it must be a finite number other than 0")
-    if not displacement / force > 0.0:
-        raise ValueError(
-            f"{fspath(path)}: the displacement of {name} along its direction = {displacement} is not allowed; it must have the sign of "
-            f"the force, {force}: is the point loaded in this file, along its direction?"
-        )
-    return displacement / force
+    elastic = omega > 0.0
+    for name, displacements in moved.items():
+        own = displacements[name] / force
+        where = f"{fspath(files[name])}: the displacement of {name} along its direction = {displacements[name]}"
+        if not own > 0.0:
+            raise ValueError(
+                f"{where} is not allowed; it must have the sign of the force, {force}: is the point loaded in this file, along its "
+                "direction?"
+            )
+        listed = float(np.sum((shapes[name][elastic] / omega[elastic]) ** 2))
+        if own < listed * (1.0 - _FROM_FILES):
+            raise ValueError(
+                f"{where} is not allowed; it must be at least {listed * abs(force)} in size, that of the listed modes: is it this point "
+                f"that the file loads, by {force}?"
+            )
+        for other, there in displacements.items():
+            if other in moved and name in moved[other]:
+                back = moved[other][name]
+                scale = math.sqrt(abs(displacements[name] * moved[other][other]))
+                if abs(there - back) > _FROM_FILES * scale:
+                    raise ValueError(
+                        f"{fspath(files[name])}: the displacement of {other} = {there} is not allowed; it must be {back}, that of "
+                        f"{name} in {fspath(files[other])}: does each file load the point for which it is stated?"
+                    )
+    return {name: displacements[name] / force for name, displacements in moved.items()}
