@@ -489,6 +489,8 @@ def test_modes_that_do_not_describe_a_hammer_test_are_refused(tmp_path):
         structures.from_universal(file, PLACES, "tip", 1)
     with pytest.raises(ValueError, match="point end = .* a direction, 1, 2 or 3"):
         structures.from_universal(file, PLACES | {"end": (4, 6)}, "tip", 2)
+    with pytest.raises(ValueError, match="the band cuts through the resonance at 1.* Hz"):
+        structures.from_universal(file, PLACES, "tip", 2, band_hz=(1, 110.3))
     # A sensor that changes during the test.
     noisy = np.random.default_rng(1)
     text = function_58()

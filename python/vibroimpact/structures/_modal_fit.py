@@ -115,6 +115,14 @@ def _finished(omega: Floats, responses: Complex, u: Floats, rest: Floats, count:
     if inside.size != count:
         raise ValueError(f"the responses show {inside.size} modes in the band, not {count}: request another number, or state another band")
     inside = inside[np.argsort(frequency[inside])]
+    # The half-power width of a resonance is twice this.
+    width = damping[inside] * frequency[inside]
+    cut = (frequency[inside] - omega[0] < width) | (omega[-1] - frequency[inside] < width)
+    if np.any(cut):
+        raise ValueError(
+            f"the band cuts through the resonance at {frequency[inside][cut][0] / (2.0 * math.pi):.5g} Hz, whose damping ratio is "
+            f"{damping[inside][cut][0]:.2g}: state a band that contains it wholly or not at all"
+        )
     outside = np.setdiff1d(np.arange(poles.size), inside)
     terms, conditional = _terms(omega, responses, poles)
     jacobian = np.empty((rest.size, u.size))
