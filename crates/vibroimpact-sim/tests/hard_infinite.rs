@@ -128,7 +128,7 @@ proptest! {
             prop_assert!((0.0..=1.0).contains(&ratio));
         }
         for i in 0..=50 {
-            let time = solution.known_until.min(1e3) * f64::from(i) / 50.0;
+            let time = solution.known_until.min(1e3) * (f64::from(i) / 50.0);
             let state = solution.at(time).unwrap();
             prop_assert!(state.force >= 0.0 && state.striker_displacement.is_finite() && state.structure_velocity.is_finite());
         }

@@ -1,474 +1,594 @@
-//! One contact, from touch to separation or into sustained contact.
+//! One contact, from touch to release.
 //!
-//! Each contact is solved in its own natural units. With closing speed `v0` at touch, the unit
-//! of time `w` is chosen such that `sqrt(S v0) (w^(5/2) + w^b) = 1` with `b = 2` for the beam and
-//! `3/2` for the plate, and `x = v0 w xi(theta)`, `t = t0 + w theta`. On a local time origin
-//! (`theta = 0` at touch, and moved forward in a long contact) the Volterra equation reads
+//! Time is measured from an origin, at first that of touch, which moves along in a long contact. With the compression `x_0` there,
 //!
 //! ```text
-//! xi = xi_0 + slope theta + theta^2 sum_j c_j / (sqrt(d_j + theta) + sqrt(d_j))^2
-//!      - int [ A (theta - phi) + B K(theta - phi) ] xi_+^(3/2) d phi,     A + B = 1,
+//! x = x_0 + r theta + bend(theta) - int [(theta - s) + kappa(theta - s)] f ds,
 //! ```
 //!
-//! where the sum over earlier impulses (ages `d_j`) is `x` of free motion with its line removed,
-//! every term positive: no digits are lost however late the contact comes.
+//! where `bend` is the free motion [`FreeMotion`] after the impulses before the origin, of which no term cancels another, and `r`
+//! the rate of compression to which they lead. Panels that lie close before the origin are not impulses yet: their share is
+//! counted from the origin on. A panel is solved, checked and accepted, as a whole or up to an event.
 
-use super::collocate::Equations;
+use super::equations::{Equations, Fault, Nodal};
+use super::event::{Event, first};
 use super::flight::Departure;
-use super::free::{Forcing, Free};
+use super::free::REACH;
 use super::history::{History, Impulse};
-use super::panel::{Panel, curvature, end_acceleration, hertz, turns, variable};
-use super::piece::Piece;
+use super::kernel::Kernel;
+use super::law::{Margin, Scaled};
+use super::natural_times::NaturalTimes;
+use super::panel::{Panel, Turn, curvature, end_acceleration, largest, turns, variable};
+use super::past::{FreeMotion, Solved};
 use super::problem::{Settings, Structure};
-use super::rule::{Kind, Tables, dot, series, series_slope};
+use super::rule::{Kind, dot, series, series_slope};
+use super::solution::{Outcome, Record};
 use super::sustained::Watch;
-use super::units::{Touch, Units};
-use crate::panel::root::{EXACTLY, root};
+use crate::StopReason;
+use contact_models::{After, Branch, Memory};
+
+/// Number of changes of branch at one time after which the law counts as inconsistent.
+const MOST_AT_ONCE: usize = 16;
+/// A contact is followed for this many of its natural times.
+const LONGEST: f64 = 300.0;
+/// The shortest panel, as a part of the natural time.
+const SHORTEST: f64 = 1e-12;
+/// Panels after which the origin of time moves.
+const MOST_PANELS: usize = 12;
+
+/// What is fixed at touch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touch {
+    pub time: f64,
+    pub closing: f64,
+    pub body: f64,
+    pub memory: Memory,
+}
+
+impl Touch {
+    /// That with which an impact begins.
+    pub fn first() -> Touch {
+        Touch { time: 0.0, closing: 1.0, body: 1.0, memory: Memory::default() }
+    }
+}
+
+/// How far a contact is followed that does not end.
+pub(super) struct Extent {
+    /// Until it is known to last, for Hertz contact; others are followed for [`LONGEST`] of their natural times.
+    watch: Option<Watch>,
+    /// To the first minimum of the compression, if it comes before.
+    to_minimum: bool,
+}
+
+impl Extent {
+    /// That of a contact which touches at `time`, known by its number `S` if it is Hertz contact.
+    pub fn new(hertz: Option<(Structure, f64)>, time: f64) -> Extent {
+        let watch = hertz.map(|(structure, s)| Watch::new(structure, s, time));
+        Extent { watch, to_minimum: false }
+    }
+
+    /// The same up to the first minimum of the compression.
+    pub fn until_minimum(self) -> Extent {
+        Extent { to_minimum: true, ..self }
+    }
+}
 
 /// How the integration of a contact ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Ending {
-    /// Separation, this long after touch (units of `T`).
-    Separated(f64),
-    /// The contact is known to last; integrated up to this time after touch.
-    Sustained(f64),
-    /// Stopped at the first minimum of the compression, as requested (units of `v T`).
-    Minimum(f64),
-    /// The limit on panels was reached at this time after touch.
-    Limit(f64),
+    /// The surfaces part, leaving this memory.
+    Released(Memory),
+    /// The impact ends with this contact.
+    Ended(Outcome),
 }
 
-/// A local extremum of the compression within a contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Turn {
-    /// Time after touch, units of `T`.
-    pub after: f64,
-    /// Compression, units of `v T`.
-    pub compression: f64,
-    /// Whether it is a minimum.
-    pub minimum: bool,
-}
-
-/// The integration of one contact.
-pub(super) struct March<'a> {
-    structure: Structure,
-    tables: &'static Tables,
-    settings: &'a Settings,
-    touch: Touch,
-    pub units: Units,
-    /// Impulses before the time origin, by age at the origin (units of `T`).
-    pub history: History,
-    free: Forcing,
-    /// Scaled time from touch to the time origin.
-    origin: f64,
-    x_origin: f64,
-    slope: f64,
-    /// Recent panels that are not part of the history yet, and their memory at the origin.
-    near: Vec<Panel>,
-    near_at_origin: f64,
-    /// `int f` and `int (p - s) f ds` from the origin to the present `p`.
-    impulse: f64,
-    moment: f64,
-    /// Same from touch.
-    impulse_since_touch: f64,
-    moment_since_touch: f64,
-    /// Present compression and its rate.
-    x: f64,
-    rate: f64,
-    falling: bool,
-    /// Slowly decaying maximum of the force, the scale of the resolution.
-    f_scale: f64,
-    pub pieces: Vec<Piece>,
-    pub turns: Vec<Turn>,
-    pub trials: usize,
-    equations: Equations,
-    /// The last panel solved, taken or not.
-    hint: Option<Hint>,
-    /// Memory for the times of the nodes of the trial panel after some earlier moment.
-    later: Vec<f64>,
-}
-
-/// A solution near which that of the next panel lies.
-struct Hint {
-    kind: Kind,
-    /// Start on the contact's current time origin.
-    start: f64,
-    h: f64,
-    x_series: Vec<f64>,
+/// The computation stops.
+fn stopped(reason: StopReason) -> Ending {
+    Ending::Ended(Outcome::Stopped(reason))
 }
 
 /// A trial panel.
 struct Trial {
     kind: Kind,
-    start: f64,
     h: f64,
-    /// Compression at the nodes.
-    x: Vec<f64>,
+    nodal: Nodal,
     x_series: Vec<f64>,
-    x_end: f64,
-    /// Unresolved part of the force relative to its scale.
-    tail: f64,
-    /// The requested tolerance, or the rounding error of the force if that is larger.
-    attainable: f64,
+    /// Empty unless the contact follows the rate.
+    rate_series: Vec<f64>,
+    f_series: Vec<f64>,
+    /// Impulse that the polynomial of the force does not resolve, relative to the allowed one.
+    unresolved: f64,
 }
 
-impl<'a> March<'a> {
-    pub fn new(structure: Structure, settings: &'a Settings, touch: Touch, history: History) -> March<'a> {
-        let mut march = March {
-            structure,
-            tables: Tables::get(structure, settings.nodes),
+/// The motion on the last panel that was solved, taken or not.
+struct Hint {
+    kind: Kind,
+    /// Start, from the origin of time.
+    start: f64,
+    h: f64,
+    x_series: Vec<f64>,
+    rate_series: Vec<f64>,
+}
+
+/// `int f` and `int (t - s) f ds` up to the present.
+#[derive(Debug, Clone, Copy, Default)]
+struct Passed {
+    impulse: f64,
+    moment: f64,
+}
+
+impl Passed {
+    fn add(&mut self, h: f64, panel: Passed) {
+        self.moment += self.impulse * h + panel.moment;
+        self.impulse += panel.impulse;
+    }
+}
+
+/// The integration of one contact.
+pub(super) struct Contact<'a> {
+    kernel: &'a Kernel,
+    law: &'a Scaled<'a>,
+    settings: &'a Settings,
+    touch: Touch,
+    branch: Branch,
+    /// Whether force or boundaries of the branch depend on the rate of compression.
+    follows_rate: bool,
+    natural_times: NaturalTimes,
+    /// Impulses before the origin of time, and the motion that follows from them.
+    past: History,
+    free: FreeMotion,
+    /// Time from touch to the origin.
+    origin: f64,
+    /// Compression at the origin, and the rate of compression to which `past` leads there.
+    x_origin: f64,
+    slope: f64,
+    /// Panels that are not impulses yet, and their after-effect at the origin.
+    near: Vec<Solved>,
+    near_at_origin: f64,
+    /// Panels since the origin.
+    panels: usize,
+    /// Time from the origin to the present, and what has passed since the origin and since touch.
+    since: f64,
+    passed: Passed,
+    passed_since_touch: Passed,
+    /// Compression and rate at present.
+    x: f64,
+    rate: f64,
+    falling: bool,
+    /// Slowly forgotten maximum of the closing speed and of the impulses of panels, the scale of the resolution.
+    impulse_scale: f64,
+    record: Vec<Panel>,
+    pub turns: Vec<Turn>,
+    peak_force: f64,
+    pub trials: usize,
+    equations: Equations,
+    hint: Option<Hint>,
+}
+
+impl<'a> Contact<'a> {
+    pub fn new(
+        kernel: &'a Kernel,
+        law: &'a Scaled<'a>,
+        settings: &'a Settings,
+        touch: Touch,
+        past: History,
+    ) -> Contact<'a> {
+        let level = touch.memory.touch_m / law.scale.displacement_m;
+        let branch = law.touch(&touch.memory, touch.closing);
+        let natural_times = NaturalTimes::new(kernel, law, &branch, level, touch.closing);
+        Contact {
+            kernel,
+            law,
             settings,
-            units: Units::new(structure, touch.s, touch.closing),
-            touch,
-            history,
-            free: Forcing::default(),
+            branch,
+            follows_rate: natural_times.follows_rate(law, &branch, level, touch.closing),
+            natural_times,
+            free: FreeMotion::during_contact(kernel, &past, REACH * natural_times.contact),
+            past,
             origin: 0.0,
-            x_origin: 0.0,
-            slope: 1.0,
+            x_origin: level,
+            slope: touch.closing,
             near: Vec::new(),
             near_at_origin: 0.0,
-            impulse: 0.0,
-            moment: 0.0,
-            impulse_since_touch: 0.0,
-            moment_since_touch: 0.0,
-            x: 0.0,
-            rate: 1.0,
+            panels: 0,
+            since: 0.0,
+            passed: Passed::default(),
+            passed_since_touch: Passed::default(),
+            x: level,
+            rate: touch.closing,
+            touch,
             falling: false,
-            f_scale: 0.0,
-            pieces: Vec::new(),
+            impulse_scale: touch.closing,
+            record: Vec::new(),
             turns: Vec::new(),
+            peak_force: 0.0,
             trials: 0,
             equations: Equations::default(),
             hint: None,
-            later: Vec::new(),
-        };
-        march.free = march.free_motion();
-        march
+        }
     }
 
-    /// Speed of the body towards the structure (units of `v`).
-    pub fn body_speed(&self) -> f64 {
-        self.touch.body - self.units.impulse * self.impulse_since_touch
+    /// Time since touch.
+    pub fn now(&self) -> f64 {
+        self.origin + self.since
     }
 
-    /// Integrates until the contact ends, lasts, or (if requested) passes its first minimum.
-    pub fn run(&mut self, to_minimum: bool, budget: usize) -> Ending {
-        let mut watch = Watch::new(self.structure, self.touch.s, self.touch.time);
-        let mut kind = Kind::Start;
-        let mut p = 0.0_f64;
-        let mut h = 0.8_f64;
+    /// Integrates until the contact or the run ends.
+    pub fn run(&mut self, mut extent: Extent, budget: usize) -> Ending {
+        let NaturalTimes { contact: natural, relaxation } = self.natural_times;
+        let shortest = SHORTEST * natural;
+        let (mut kind, mut h, mut at_once) = (Kind::Start, natural, 0);
+        if self.kernel.instant() == 0.0 {
+            // a force that begins with a jump is resolved in its impulse, which may leave out its first moment
+            self.peak_force = self.law.force(&self.branch, self.x, self.rate).force.max(0.0);
+        }
         while self.trials < budget {
-            let floor = 1e-10 * (1.0 + p);
-            let Some(trial) = self.attempt(kind, p, h) else {
-                h *= 0.5;
-                continue;
-            };
-            let (found, falling) = turns(self.tables, kind, &trial.x_series, self.falling);
-            let first_low = found.iter().find(|turn| turn.2 && turn.1 < 0.0).map(|turn| turn.0);
-            let low = first_low.or((trial.x_end < 0.0).then_some(1.0));
-            let ratio = trial.tail / trial.attainable;
-            if h > floor && (low.is_some() || ratio > 1.0) {
-                // the panel is not accepted: a separation may lie ahead, or the panel is too long
-                let shorter = h * (0.9 * ratio.powf(-1.0 / self.tables.p as f64)).clamp(0.25, 0.8);
-                if kind == Kind::Middle
-                    && let Some(length) = separation_ahead(&trial, low, &found)
-                {
-                    if let Some(ending) = self.finish(p, length) {
-                        return ending;
-                    }
-                    h = shorter.min(0.5 * length).max(floor);
-                } else {
-                    h = shorter.max(floor);
+            let trial = match self.attempt(kind, h) {
+                Ok(trial) => trial,
+                Err(Fault::Law) => return stopped(StopReason::Law),
+                Err(Fault::NotConverged) if h <= shortest => return stopped(StopReason::FinestStep),
+                Err(Fault::NotConverged) => {
+                    h = (0.25 * h).max(shortest);
+                    continue;
                 }
+            };
+            if let Some(event) = self.event(&trial) {
+                let length = event.fraction * h;
+                if length <= shortest && trial.unresolved > 1.0 && h > shortest {
+                    // so early a fall may be one of a polynomial that does not follow the motion
+                    h = (0.25 * h).max(shortest);
+                    continue;
+                }
+                let landed = if length <= shortest {
+                    at_once += 1;
+                    at_once <= MOST_AT_ONCE
+                } else {
+                    at_once = 0;
+                    kind == Kind::Middle && self.land(event, length)
+                };
+                if at_once > MOST_AT_ONCE {
+                    return stopped(StopReason::Law);
+                }
+                if !landed {
+                    h = (0.5 * length).max(0.5 * shortest);
+                    continue;
+                }
+                match self.law.cross(&self.branch, event.which, self.x, self.rate) {
+                    After::Release(memory) => return Ending::Released(memory),
+                    After::Continue(branch) => self.go_on_with(branch),
+                }
+                (kind, h) = (Kind::Start, length.max(0.1 * self.now()).max(shortest));
                 continue;
             }
-            let (trial_tail, attainable) = (trial.tail, trial.attainable);
-            let minima = self.accept(trial, &found, falling);
-            if to_minimum && let Some(minimum) = minima {
-                return Ending::Minimum(minimum);
+            let order = -1.0 / self.kernel.tables.p as f64;
+            if trial.unresolved > 1.0 && h > shortest {
+                h = (h * (0.9 * trial.unresolved.powf(order)).clamp(0.25, 0.8)).max(shortest);
+                continue;
             }
-            if let Some(piece) = self.pieces.last() {
-                watch.see(&self.units, self.tables, piece);
+            h *= (0.95 * trial.unresolved.max(1e-30).powf(order)).clamp(1.0, 2.0);
+            self.take(trial);
+            if self.pulls() {
+                return stopped(StopReason::Law);
             }
-            p += h;
-            let elapsed = self.units.time * (self.origin + p);
-            if watch.lasting() && self.touch.time + elapsed >= self.settings.horizon {
-                return Ending::Sustained(elapsed);
+            (kind, at_once) = (Kind::Middle, 0);
+            if extent.to_minimum && self.first_minimum().is_some() {
+                return stopped(StopReason::SubImpacts);
             }
-            kind = Kind::Middle;
-            // below 4e-15 the coefficients are rounding and say nothing about the length
-            let unresolved = (trial_tail - 4e-15).max(1e-30) / attainable;
-            let growth = 0.95 * unresolved.powf(-1.0 / self.tables.p as f64);
-            // a panel of the smallest length was accepted as it is: continue after it
-            h *= if h <= floor { 4.0 } else { growth.clamp(1.0, 2.0) };
-            if self.near.len() >= 12 {
-                self.move_origin(p, false);
-                p = 0.0;
-            }
-        }
-        Ending::Limit(self.units.time * (self.origin + p))
-    }
-
-    /// Free part of `xi` plus what earlier panels of this contact add, at the nodes and the end of a panel from the
-    /// present `p`, up to which `impulse` and `moment` count: the right-hand sides of its equations.
-    fn know(&mut self, kind: Kind, p: f64, h: f64) {
-        let known = &mut self.equations.known;
-        let elapsed = &self.tables.rule(kind).elapsed;
-        known.clear();
-        known.resize(elapsed.len(), -self.near_at_origin);
-        for panel in &self.near {
-            let behind = (p - panel.start - panel.h).max(0.0);
-            self.later.clear();
-            self.later.extend(elapsed.iter().map(|e| behind + h * e));
-            panel.add_memory(self.structure, self.tables, &self.later, known);
-        }
-        for (known, e) in known.iter_mut().zip(elapsed) {
-            let theta = p + h * e;
-            *known = self.x_origin + self.slope * theta + theta * theta * self.free.bend(theta)
-                - self.units.linear * (self.moment + self.impulse * h * e)
-                - self.units.memory * *known;
-        }
-    }
-
-    /// A guess of the compression at the nodes of a panel from the present `p`: that of the last solved panel or, beyond it, a
-    /// parabola.
-    fn guess(&self, kind: Kind, p: f64, h: f64) -> Vec<f64> {
-        let rule = self.tables.rule(kind);
-        let elapsed = &rule.elapsed[..self.tables.p];
-        let Some(hint) = &self.hint else {
-            return elapsed.iter().map(|e| self.x + self.rate * h * e).collect();
-        };
-        let offset = (p - hint.start) / hint.h;
-        let scale = h / hint.h;
-        if offset < 0.5 {
-            let at = |e: &f64| series(&hint.x_series, variable(hint.kind, offset + scale * e));
-            return elapsed.iter().map(at).collect();
-        }
-        let bend = 0.5 * end_acceleration(hint.kind, hint.h, &hint.x_series);
-        let bound = self.x + h * self.rate.abs();
-        let at = |e: &f64| (self.x + h * e * (self.rate + h * e * bend)).min(bound).max(0.0);
-        elapsed.iter().map(at).collect()
-    }
-
-    /// Solves one panel from the present `p`; `None` if Newton's method failed.
-    fn attempt(&mut self, kind: Kind, p: f64, h: f64) -> Option<Trial> {
-        self.trials += 1;
-        let n = self.tables.p;
-        let rule = self.tables.rule(kind);
-        let linear = self.units.linear * h * h;
-        let memory = self.units.memory
-            * match self.structure {
-                Structure::Beam => h * h.sqrt(),
-                Structure::Plate => h,
+            let lasts = match &mut extent.watch {
+                Some(watch) => {
+                    self.record.last().inspect(|panel| watch.see(self.kernel.tables, panel));
+                    watch.lasting().then_some(Outcome::Sustained)
+                }
+                None => {
+                    let long = self.now() > LONGEST * (natural + relaxation);
+                    long.then_some(Outcome::Stopped(StopReason::ContactLasts))
+                }
             };
-        self.know(kind, p, h);
-        let matrix = &mut self.equations.matrix;
-        matrix.clear();
-        matrix.extend(rule.linear.iter().zip(&rule.memory).map(|(l, m)| linear * l + memory * m));
-        let mut x = self.guess(kind, p, h);
-        self.hint = None;
-        if !self.equations.solve(&mut x, 1e-6 * self.settings.tolerance) {
-            return None;
+            if let Some(outcome) = lasts
+                && self.touch.time + self.now() >= self.settings.horizon
+            {
+                return Ending::Ended(outcome);
+            }
+            if self.panels >= MOST_PANELS {
+                self.move_origin(false);
+            }
         }
-        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
-        let x_end = self.equations.end(&f);
-        let x_series = self.tables.coefficients(&x);
-        let largest = f.iter().fold(0.0_f64, |a, &b| a.max(b));
-        let scale = largest.max(self.f_scale * (-0.5 * h).exp()).max(f64::MIN_POSITIVE);
-        let last_rows = self.tables.to_legendre[(n - 2) * n..].chunks_exact(n);
-        let tail = last_rows.fold(0.0_f64, |a, row| a.max(dot(row, &f).abs())) / scale;
-        let terms = self.x_origin + (self.slope.abs() + self.units.linear * self.impulse) * (p + h);
-        let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale;
-        let attainable = self.settings.tolerance.max(noise);
-        self.hint = Some(Hint { kind, start: p, h, x_series: x_series.clone() });
-        Some(Trial { kind, start: p, h, x, x_series, x_end, tail, attainable })
+        stopped(StopReason::Steps)
     }
 
-    /// Tries a mapped end panel over the last stretch; `None` if it is not resolved, or if there
-    /// is no separation after all.
-    fn finish(&mut self, p: f64, guess: f64) -> Option<Ending> {
-        let (mut length, mut last) = (guess, f64::INFINITY);
-        for _ in 0..40 {
-            let trial = self.attempt(Kind::End, p, length)?;
-            // x = x_end + (te - t) |x'|, and te - t = length sigma^2
-            let slope = -0.5 * curvature(&trial.x_series) / length;
-            let step = -trial.x_end / slope;
-            if slope >= 0.0 || !step.is_finite() {
-                return None;
+    /// Continues on another branch of the law.
+    fn go_on_with(&mut self, branch: Branch) {
+        (self.branch, self.hint) = (branch, None);
+        self.follows_rate = self.natural_times.follows_rate(self.law, &self.branch, self.x, self.touch.closing);
+    }
+
+    /// Whether the law gave a tensile force on the last panel, which is not allowed.
+    fn pulls(&self) -> bool {
+        self.record.last().is_some_and(|panel| panel.force.iter().any(|f| *f < -1e-6 * self.peak_force))
+    }
+
+    /// Sets the equations of a panel from now on.
+    fn pose(&mut self, kind: Kind, h: f64) {
+        let (kernel, Passed { impulse, moment }) = (self.kernel, self.passed);
+        let Equations { x, rate, .. } = &mut self.equations;
+        let after: Vec<f64> = kernel.tables.rule(kind).elapsed.iter().map(|e| h * e).collect();
+        let (memory, slope) = (&mut x.known, &mut rate.known);
+        memory.clear();
+        memory.resize(after.len(), -self.near_at_origin);
+        slope.clear();
+        slope.resize(if self.follows_rate { after.len() } else { 0 }, 0.0);
+        for panel in &self.near {
+            panel.add_after_effect(kernel, self.since - panel.end, &after, memory, slope);
+        }
+        let line = |tau: f64| self.x_origin + self.slope * (self.since + tau);
+        let pushed = |tau: f64| moment + impulse * (tau + kernel.instant());
+        kernel.weigh_compression(kind, h, &mut x.weights);
+        if self.follows_rate {
+            kernel.weigh_rate(kind, h, &mut rate.weights);
+            for ((memory, slope), &tau) in memory.iter_mut().zip(slope).zip(&after) {
+                let (bend, gain) = self.free.bend_and_gain(self.since + tau);
+                *memory = line(tau) + bend - pushed(tau) - *memory;
+                *slope = self.slope + gain - impulse - *slope;
             }
-            if step.abs() < 1e-3 * length && trial.tail > trial.attainable && length > 1e-9 {
-                return None;
+        } else {
+            rate.weights.clear();
+            for (memory, &tau) in memory.iter_mut().zip(&after) {
+                *memory = line(tau) + self.free.bend(self.since + tau) - pushed(tau) - *memory;
+            }
+        }
+    }
+
+    /// Compression and rate on a panel from now on, if the rate stayed as it is.
+    fn guess(&self, kind: Kind, h: f64) -> Nodal {
+        let elapsed = &self.kernel.tables.rule(kind).elapsed;
+        Nodal {
+            x: elapsed.iter().map(|e| self.x + self.rate * h * e).collect(),
+            rate: vec![if self.follows_rate { self.rate } else { 0.0 }; elapsed.len()],
+            force: vec![0.0; self.kernel.tables.p],
+            stiffness: 0.0,
+        }
+    }
+
+    /// Compression and rate as on the panel solved before, and beyond it with its last acceleration.
+    fn guess_from(&self, hint: &Hint, kind: Kind, h: f64) -> Nodal {
+        let mut nodal = self.guess(kind, h);
+        let (offset, scale) = ((self.since - hint.start) / hint.h, h / hint.h);
+        let elapsed = &self.kernel.tables.rule(kind).elapsed;
+        if offset < 0.5 {
+            for ((x, rate), e) in nodal.x.iter_mut().zip(&mut nodal.rate).zip(elapsed) {
+                let s = variable(hint.kind, offset + scale * e);
+                (*x, *rate) = (series(&hint.x_series, s), series(&hint.rate_series, s));
+            }
+        } else if hint.kind != Kind::End {
+            let (acceleration, most) = (end_acceleration(hint.kind, hint.h, &hint.x_series), h * self.rate.abs());
+            for (x, e) in nodal.x.iter_mut().zip(elapsed) {
+                *x += (0.5 * h * e * h * e * acceleration).clamp(-most, most);
+            }
+        }
+        nodal
+    }
+
+    /// Solves one panel from now on.
+    fn attempt(&mut self, kind: Kind, h: f64) -> Result<Trial, Fault> {
+        self.trials += 1;
+        let tables = self.kernel.tables;
+        self.pose(kind, h);
+        let rest = 1e-6 * self.settings.tolerance;
+        let from_hint = self.hint.take().map(|hint| self.guess_from(&hint, kind, h));
+        let plain = self.guess(kind, h);
+        let mut solve = |mut nodal: Nodal| {
+            self.equations.solve(self.law, &self.branch, rest, &mut nodal)?;
+            Ok(nodal)
+        };
+        let nodal = match from_hint.map(&mut solve) {
+            Some(Ok(nodal)) => nodal,
+            _ => solve(plain)?,
+        };
+        let x_series = tables.coefficients(&nodal.x[..tables.p]);
+        let rate_series = if self.follows_rate { tables.coefficients(&nodal.rate[..tables.p]) } else { Vec::new() };
+        self.hint =
+            Some(Hint { kind, start: self.since, h, x_series: x_series.clone(), rate_series: rate_series.clone() });
+        let f_series = tables.coefficients(&nodal.force);
+        let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
+        let noise = 1e-15 * self.terms(h)[0] * nodal.stiffness * h;
+        let allowed = (self.settings.tolerance * self.scale_after(h, &nodal.force)).max(noise).max(f64::MIN_POSITIVE);
+        Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, unresolved: tail * h / allowed })
+    }
+
+    /// The scale of impulses after a panel with these forces.
+    fn scale_after(&self, h: f64, force: &[f64]) -> f64 {
+        let largest = force.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+        (largest * h).max(self.impulse_scale * (-0.5 * h / self.natural_times.contact).exp())
+    }
+
+    /// The size of the terms in the compression and its rate on a panel from now on.
+    fn terms(&self, h: f64) -> [f64; 2] {
+        let rate = self.slope.abs() + self.passed.impulse;
+        [self.x_origin.abs() + rate * (self.since + h), rate]
+    }
+
+    /// The first boundary that a panel meets.
+    fn event(&self, trial: &Trial) -> Option<Event> {
+        let margins = self.law.margins(&self.branch);
+        let Nodal { x, rate, .. } = &trial.nodal;
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+        let (x_size, rate_size, [x_terms, rate_terms]) = (largest(x), largest(rate), self.terms(trial.h));
+        let noise = |margin: &Margin| {
+            let local = margin.per_compression.abs() * x_size + margin.per_rate.abs() * rate_size;
+            1e-12 * local + 4e-15 * margin.size(x_terms, rate_terms + rate_size)
+        };
+        first(self.kernel.tables, trial.kind, &margins, [&trial.x_series, &trial.rate_series], noise)
+    }
+
+    /// Accepts a panel that ends where the boundary is met, from a guess of its length. Returns whether there is one that is
+    /// resolved.
+    fn land(&mut self, event: Event, guess: f64) -> bool {
+        let margins = self.law.margins(&self.branch);
+        let Some(margin) = margins.get(event.which) else { return false };
+        let (mut length, mut last) = (guess, f64::INFINITY);
+        for _ in 0..20 {
+            let Ok(trial) = self.attempt(Kind::End, length) else { return false };
+            let (x, rate) = trial.end();
+            let value = margin.at(x, rate);
+            let slope = margin.per_compression * rate + margin.per_rate * trial.end_acceleration();
+            let step = -value / slope;
+            if !(slope < 0.0 && step.is_finite()) {
+                return false;
             }
             // converged, or as far as rounding lets the steps shrink
-            let enough = (4e-16 * (p + length)).max(1e-5 * self.settings.tolerance * length);
-            let settled = step.abs() <= enough || (step.abs() < 1e-6 * length && step.abs() > 0.1 * last);
-            last = step.abs();
-            if settled {
-                let (found, falling) = turns(self.tables, Kind::End, &trial.x_series, self.falling);
-                if found.iter().any(|turn| turn.2 && turn.1 <= 0.0) {
-                    return None;
+            let small = (4e-16 * (self.since + length)).max(1e-5 * self.settings.tolerance.max(1e-9) * length);
+            let stalled = step.abs() < 1e-6 * length && step.abs() > 0.1 * last;
+            if step.abs() <= small || stalled {
+                if trial.unresolved > 1.0 {
+                    return false;
                 }
-                self.accept(trial, &found, falling);
-                self.move_origin(p + length, true);
-                return Some(Ending::Separated(self.units.time * self.origin));
+                self.take(trial);
+                return true;
             }
+            if step.abs() < 1e-3 * length && trial.unresolved > 1.0 {
+                return false;
+            }
+            last = step.abs();
             length += step.clamp(-0.5 * length, 0.5 * guess);
         }
-        None
+        false
     }
 
-    /// Adds a panel to the record; returns the first minimum in it.
-    fn accept(&mut self, trial: Trial, found: &[(f64, f64, bool)], falling: bool) -> Option<f64> {
-        let panel = Panel::new(self.tables, trial.kind, trial.start, trial.h, trial.x);
-        let (impulse, moment) = (panel.impulse(self.tables), panel.moment(self.tables));
-        for &(elapsed, x, minimum) in found {
-            let after = self.units.time * (self.origin + panel.start + elapsed * panel.h);
-            self.turns.push(Turn { after, compression: self.units.length * x, minimum });
+    /// Adds a panel to the record.
+    fn take(&mut self, trial: Trial) {
+        let (x_end, rate_end) = trial.end();
+        let Trial { kind, h, mut nodal, x_series, f_series, .. } = trial;
+        let tables = self.kernel.tables;
+        nodal.x.truncate(tables.p);
+        let (found, falling) = turns(tables, kind, &x_series, self.falling);
+        for (fraction, compression, minimum) in found {
+            self.turns.push(Turn { after: self.now() + fraction * h, compression, minimum });
         }
-        self.pieces.push(Piece {
-            kind: panel.kind,
-            start: self.origin + panel.start,
-            h: panel.h,
-            x: panel.x.clone(),
-            force: None,
-            impulse: self.impulse_since_touch,
-            moment: self.moment_since_touch,
-        });
-        self.moment += self.impulse * panel.h + moment;
-        self.moment_since_touch += self.impulse_since_touch * panel.h + moment;
-        self.impulse += impulse;
-        self.impulse_since_touch += impulse;
-        self.x = trial.x_end.max(0.0);
-        self.rate = match panel.kind {
-            Kind::Start => 0.5,
-            _ => 1.0,
-        } * series_slope(&trial.x_series, 1.0)
-            / panel.h;
         self.falling = falling;
-        let largest = panel.f.iter().fold(0.0_f64, |a, &b| a.max(b));
-        self.f_scale = largest.max(self.f_scale * (-0.5 * panel.h).exp());
-        self.near.push(panel);
-        found.iter().find(|turn| turn.2).map(|turn| turn.1 * self.units.length)
+        // the sum of all coefficients bounds the force
+        if f_series.iter().map(|c| c.abs()).sum::<f64>() > self.peak_force {
+            self.peak_force = self.peak_force.max(largest(&tables.sample, &f_series));
+        }
+        self.impulse_scale = self.scale_after(h, &nodal.force);
+        let Passed { impulse, moment } = self.passed_since_touch;
+        let (mass, lever) = self.kernel.totals(kind);
+        let panel = Passed { impulse: h * dot(mass, &nodal.force), moment: h * h * dot(lever, &nodal.force) };
+        self.passed.add(h, panel);
+        self.passed_since_touch.add(h, panel);
+        self.since += h;
+        self.panels += 1;
+        (self.x, self.rate) = (x_end, rate_end);
+        let start = self.now() - h;
+        if self.kernel.has_after_effect() {
+            self.near.push(Solved::new(self.kernel, kind, self.since, h, nodal.force.clone(), f_series));
+        }
+        self.record.push(Panel { kind, start, h, x: nodal.x, force: nodal.force, impulse, moment });
     }
 
-    /// Moves the time origin to the present `p`: panels far enough back join the history.
-    fn move_origin(&mut self, p: f64, done: bool) {
-        let ready = |panel: &Panel| {
-            let behind = (p - panel.start - panel.h) / panel.h;
-            done || behind >= if panel.kind == Kind::Start { 1.5 } else { 0.5 }
-        };
-        let count = self.near.iter().take_while(|panel| ready(panel)).count();
-        self.slope += self.free.rate_gain(p) - self.units.linear * self.impulse;
-        self.history.advance(self.units.time * p);
-        let moved: Vec<Panel> = self.near.drain(..count).collect();
-        if self.structure == Structure::Beam
-            && let (Some(first), Some(last)) = (moved.first(), moved.last())
-        {
-            let youngest = self.units.time * (p - last.start - last.h).max(0.0);
-            let oldest = self.units.time * (p - first.start);
-            let impulses: Vec<Impulse> = moved.iter().flat_map(|panel| self.as_impulses(panel, p)).collect();
+    /// Moves the origin of time to the present. Panels that lie far enough back become impulses; at release all of them.
+    fn move_origin(&mut self, released: bool) {
+        let p = self.since;
+        self.slope += self.free.bend_and_gain(p).1 - self.passed.impulse;
+        self.past.advance(p);
+        let far =
+            |panel: &Solved| released || p - panel.end >= if panel.kind == Kind::Start { 1.5 } else { 0.5 } * panel.h;
+        let count = self.near.iter().take_while(|panel| far(panel)).count();
+        let moved: Vec<Solved> = self.near.drain(..count).collect();
+        if let (Some(oldest), Some(youngest)) = (moved.first(), moved.last()) {
+            let mut impulses = Vec::new();
+            for panel in &moved {
+                let behind = p - panel.end;
+                impulses.extend(panel.impulses(self.kernel.tables, behind, behind));
+            }
             // from now on their share of the rate is part of the slope
-            let share: f64 = impulses.iter().map(|i| i.weight / (2.0 * i.age.sqrt())).sum();
-            self.slope -= share / self.units.speed;
-            self.history.push(impulses, youngest, oldest);
+            let share = |impulse: &Impulse| impulse.weight * self.kernel.slope(impulse.age);
+            self.slope -= impulses.iter().map(share).sum::<f64>();
+            self.past.push(impulses, p - youngest.end, p - oldest.end + oldest.h);
         }
-        if !done {
-            self.history.condense();
+        if !released {
+            self.past.condense();
         }
-        self.near.iter_mut().for_each(|panel| panel.start -= p);
-        self.hint.iter_mut().for_each(|hint| hint.start -= p);
         self.origin += p;
-        self.x_origin = self.x;
-        (self.impulse, self.moment) = (0.0, 0.0);
-        self.near_at_origin = self
-            .near
-            .iter()
-            .map(|panel| panel.memory(self.structure, self.tables, (-panel.start - panel.h).max(0.0)))
-            .sum();
-        self.free = self.free_motion();
+        self.near.iter_mut().for_each(|panel| panel.end -= p);
+        self.hint.iter_mut().for_each(|hint| hint.start -= p);
+        (self.since, self.passed, self.panels, self.x_origin) = (0.0, Passed::default(), 0, self.x);
+        let mut at_origin = [0.0];
+        for panel in &self.near {
+            panel.add_after_effect(self.kernel, -panel.end, &[0.0], &mut at_origin, &mut []);
+        }
+        [self.near_at_origin] = at_origin;
+        if !released {
+            let reach = REACH * self.natural_times.contact;
+            self.free = FreeMotion::during_contact(self.kernel, &self.past, reach);
+        }
     }
 
-    fn free_motion(&self) -> Forcing {
-        Forcing::new(&self.history, self.units.time, self.units.speed * self.units.time.sqrt(), self.tables)
+    /// The first minimum of the compression.
+    pub fn first_minimum(&self) -> Option<f64> {
+        self.turns.iter().find(|turn| turn.minimum).map(|turn| turn.compression)
     }
 
-    /// The flight that follows separation.
-    pub fn departure(&self) -> Departure {
-        let rate = self.units.speed * self.slope;
-        let free = Free::new(&self.history, 1.0, 1.0);
-        // The body's speed as the sum of both, not as 1 minus all impulses: close to the critical S
-        // it falls below the rounding error of the latter.
-        Departure { body: rate + free.structure_speed(), rate, free }
+    /// Travel of the body towards the structure since touch.
+    pub fn body_travel(&self) -> f64 {
+        self.touch.body * self.now() - self.passed_since_touch.moment
     }
 
-    /// A panel of this contact as impulses, seen from the present `p`.
-    fn as_impulses(&self, panel: &Panel, p: f64) -> Vec<Impulse> {
-        let behind = p - panel.start - panel.h;
-        let rule = self.tables.rule(panel.kind);
-        // pairs (remaining fraction, weight); where the next panel is much shorter, nodes are close to the panel's end, so that
-        // the impulses represent the panel from the present on
-        let points: Vec<(f64, f64)> = match panel.kind {
-            Kind::Start => (0..self.tables.p).map(|j| (rule.remaining[j], rule.mass[j] * panel.f[j])).collect(),
-            Kind::End => {
-                let weight = |s: f64, w: f64| w * 2.0 * s * series(&panel.f_series, s);
-                self.tables.fine.iter().map(|&(s, w)| (s * s, weight(s, w))).collect()
-            }
-            Kind::Middle => {
-                let (mut points, mut high) = (Vec::new(), 1.0);
-                while high > 0.0 {
-                    // the piece of remaining fractions (low, high) is seen from its own length or more
-                    let low = if high * panel.h <= 2.0 * behind || high < 1e-12 { 0.0 } else { 0.5 * high };
-                    points.extend((0..self.tables.p).map(|j| {
-                        let remaining = low + (high - low) * self.tables.sigma[j];
-                        (remaining, (high - low) * self.tables.weight[j] * series(&panel.f_series, 1.0 - remaining))
-                    }));
-                    high = low;
-                }
-                points
-            }
+    /// What is kept of the contact, at whose touch the body had travelled `body_travel`.
+    pub fn record(&mut self, body_travel: f64) -> Record {
+        let (panels, turns) = (std::mem::take(&mut self.record), std::mem::take(&mut self.turns));
+        Record { panels, turns, peak_force: self.peak_force, body_travel }
+    }
+
+    /// The flight that follows release, and the past as seen from there.
+    pub fn departure(mut self) -> (Departure, History) {
+        self.move_origin(true);
+        let free = FreeMotion::new(self.kernel, &self.past);
+        // Where the structure's speed follows from the past alone, the sum of both speeds has the digits that one minus all impulses
+        // loses as the striker slows down.
+        let body = match self.kernel.instant() {
+            0.0 => self.slope + free.structure_speed(),
+            _ => self.touch.body - self.passed_since_touch.impulse,
         };
-        points
-            .into_iter()
-            .filter(|&(_, weight)| weight > 0.0)
-            .map(|(remaining, weight)| Impulse {
-                age: self.units.time * (behind + panel.h * remaining),
-                weight: self.units.impulse * panel.h * weight,
-            })
-            .collect()
+        (Departure { x: self.x, rate: self.slope, body, free }, self.past)
     }
 }
 
-/// Time from the start of a rejected panel to the separation that its solution predicts.
-fn separation_ahead(trial: &Trial, low: Option<f64>, found: &[(f64, f64, bool)]) -> Option<f64> {
-    let h = trial.h;
-    let Some(low) = low else {
-        let rate = series_slope(&trial.x_series, 1.0) / h;
-        return (rate < 0.0 && trial.x_end < -0.5 * h * rate).then(|| h - trial.x_end / rate);
-    };
-    // the compression falls from its last maximum before `low`
-    let from = found.iter().filter(|turn| !turn.2 && turn.0 < low).map(|turn| turn.0).fold(0.0, f64::max);
-    Some(h * zero(&trial.x_series, from, low))
-}
+impl Trial {
+    /// Compression and its rate at the end.
+    fn end(&self) -> (f64, f64) {
+        let p = self.nodal.force.len();
+        let rate = match self.kind {
+            _ if !self.rate_series.is_empty() => self.nodal.rate[p],
+            Kind::Start => 0.5 * series_slope(&self.x_series, 1.0) / self.h,
+            Kind::Middle => series_slope(&self.x_series, 1.0) / self.h,
+            Kind::End => -0.5 * curvature(&self.x_series) / self.h,
+        };
+        (self.nodal.x[p], rate)
+    }
 
-/// Elapsed fraction of a middle panel at which a compression that is positive at `from` and not
-/// at `to` falls to zero.
-fn zero(x_series: &[f64], from: f64, to: f64) -> f64 {
-    root(from, to, EXACTLY, |s| series(x_series, s))
+    /// Rate of the rate of compression at the end of an end panel, where the contact follows the rate.
+    fn end_acceleration(&self) -> f64 {
+        -0.5 * curvature(&self.rate_series) / self.h
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::infinite::receptance::{Receptance, Term, UNIT};
+    use contact_models::Hertz;
 
     /// One start panel of fixed length: every four nodes more gain two digits and more, down to
     /// rounding.
     #[test]
     fn a_panel_converges_spectrally() {
+        let beam = Receptance::new(&[Term { coefficient: 1.0, power: 0.5 }]).unwrap();
+        let law = Scaled { law: &Hertz::new(15.0_f64.sqrt()).unwrap(), scale: beam.scale(&UNIT).unwrap() };
         let x_end = |nodes: usize| {
             let settings = Settings { nodes, ..Settings::default() };
-            let touch = Touch { s: 15.0, time: 0.0, closing: 1.0, body: 1.0 };
-            let mut march = March::new(Structure::Beam, &settings, touch, History::default());
-            march.attempt(Kind::Start, 0.0, 2.0).unwrap().x_end
+            let kernel = Kernel::new(&beam, &law.scale, nodes);
+            let mut contact = Contact::new(&kernel, &law, &settings, Touch::first(), History::default());
+            contact.attempt(Kind::Start, 0.8).ok().map(|trial| trial.end().0).unwrap()
         };
         let exact = x_end(32);
         let errors = [8, 12, 16, 20].map(|nodes| (x_end(nodes) - exact).abs());

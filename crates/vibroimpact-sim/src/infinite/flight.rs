@@ -1,88 +1,81 @@
-//! Free flight between contacts, in closed form.
+//! Free flight between contacts.
 //!
-//! Apart, the body moves with its constant speed `u` (towards the structure) and the struck
-//! point under the after-effect of the past. The compression (negative: a gap) is
-//! `x(tau) = tau q(tau)`, with `q(tau) = r + tau sum_j c_j / (sqrt(d_j + tau) + sqrt(d_j))^2` (see
-//! [`super::free`]), which equals `u - sum_j w_j / (sqrt(d_j + tau) + sqrt(d_j))`: it increases from
-//! `r = x'(0) < 0` to `u` and is concave, because every `w_j > 0`. Hence there is exactly one next
-//! contact if `u > 0`, and none otherwise. No sampling is involved, nothing can be missed. A plate
-//! stays where the last contact left it, so there `q = r = u < 0`.
+//! The compression minus that of the next touch is convex (see [`super::past`]) and not positive at release. Hence there is at
+//! most one next contact, and Newton's method from a later time converges to it monotonically.
 
-use super::free::Free;
+use super::past::FreeMotion;
+use crate::panel::root::{EXACTLY, root};
 
-/// Motion at the start of a flight.
+/// Beyond this time nothing is looked for.
+const LATEST: f64 = 1e150;
+
+/// Rounding of a speed, relative to its terms.
+const ROUNDING: f64 = 1e-15;
+
+/// Motion at release.
 #[derive(Debug, Clone)]
 pub(super) struct Departure {
-    /// Speed of the body towards the structure.
-    pub body: f64,
-    /// Rate of compression, below zero.
+    /// Compression and its rate.
+    pub x: f64,
     pub rate: f64,
-    pub free: Free,
+    /// Speed of the striker towards the structure.
+    pub body: f64,
+    pub free: FreeMotion,
 }
 
 impl Departure {
-    /// Time until the surfaces meet again and the closing speed then; `None` if they never do.
-    pub fn next_contact(&self) -> Option<(f64, f64)> {
-        let total = self.free.impulse();
-        if !(self.body > 0.0 && total > 0.0) {
+    /// Compression and its rate, `tau` after release.
+    pub fn state(&self, tau: f64) -> (f64, f64) {
+        let (bend, gain) = self.free.bend_and_gain(tau);
+        (self.x + self.rate * tau + bend, self.rate + gain)
+    }
+
+    /// Whether the surfaces part, and the speed of the striker is more than the rounding of its terms, so that its sign is known.
+    pub fn is_known(&self) -> bool {
+        self.rate < 0.0 && self.body.abs() > ROUNDING * self.free.structure_speed()
+    }
+
+    /// Time until the compression has risen to `level` and the closing speed then, looked for from a first time on;
+    /// `None` if it never does.
+    pub fn next_touch(&self, level: f64, first: f64) -> Option<(f64, f64)> {
+        if self.body <= 0.0 {
             return None;
         }
-        // q and its slope
-        let q = |tau: f64| {
-            let bend = self.free.bend(tau);
-            (self.rate + tau * bend, self.free.rate_gain(tau) / tau - bend)
+        let offset = (self.x - level).min(0.0);
+        let gap = |tau: f64| {
+            let (bend, gain) = self.free.bend_and_gain(tau);
+            (offset + self.rate * tau + bend, self.rate + gain)
         };
-        // q is concave in tau, so Newton's method from the left never passes the root. In y = tau^(-1/2) it is convex and
-        // decreasing, so Newton's method from y = u / total, a time not before the root, does not pass it either. The two
-        // sequences enclose the root.
-        let (mut early, mut late) = (-self.rate / self.free.bend(0.0), (total / self.body).powi(2));
-        for _ in 0..200 {
-            let (value, slope) = q(early);
-            let advanced = early - value / slope;
-            let (value, slope) = q(late);
-            let pulled = (late.sqrt().recip() + value / (2.0 * late * late.sqrt() * slope)).powi(-2);
-            let moved = (advanced > early && advanced < late, pulled < late && pulled > early);
-            early = if moved.0 { advanced } else { early };
-            late = if moved.1 { pulled } else { late };
-            if !(moved.0 && moved.1) || late < early * (1.0 + 1e-3) {
-                break;
+        // bend / tau^2 decreases, which gives a time not later than the touch
+        let first = first.max(f64::MIN_POSITIVE);
+        let mut tau = first.max(-self.rate * first * first / self.free.bend(first)).min(LATEST);
+        while gap(tau).0 <= 0.0 {
+            tau *= 2.0;
+            if tau > LATEST {
+                return None;
             }
         }
-        // one of the sequences may have reached the root first: the end with the smaller value is next to it, and Newton's
-        // method finishes from there
-        let mut tau = if q(early).0.abs() < q(late).0.abs() { early } else { late };
-        for _ in 0..4 {
-            let (value, slope) = q(tau);
-            tau -= value / slope;
-        }
-        let closing = self.rate + self.free.rate_gain(tau);
-        if tau > 0.0 && closing > 0.0 && tau.is_finite() {
-            Some((tau, closing))
-        } else {
-            // the body is so slow that rounding exceeds q near the root: the past then acts as one impulse, x = u t - I sqrt(t)
-            Some(((total / self.body).powi(2), 0.5 * self.body))
-        }
-    }
-
-    /// Compression (below zero) and its rate, `tau` after separation.
-    pub fn state(&self, tau: f64) -> (f64, f64) {
-        (tau * (self.rate + tau * self.free.bend(tau)), self.rate + self.free.rate_gain(tau))
-    }
-
-    /// The least compression of the flight, or minus infinity if the gap opens for good.
-    pub fn least_compression(&self) -> f64 {
-        if self.body <= 0.0 {
-            return f64::NEG_INFINITY;
-        }
-        // the rate is concave and increasing: Newton from the left, as above
-        let mut tau = 0.0_f64;
         for _ in 0..200 {
-            let next = tau - self.state(tau).1 / self.free.acceleration(tau);
-            if next <= tau * (1.0 + 1e-12) || next.is_nan() {
+            let (value, slope) = gap(tau);
+            let next = tau - value / slope;
+            if !(next < tau * (1.0 - 1e-15) && next > 0.0) {
                 break;
             }
             tau = next;
         }
-        self.state(tau).0.min(0.0)
+        Some((tau, gap(tau).1))
+    }
+
+    /// The least compression of the flight, or minus infinity if the gap opens for good.
+    pub fn least_compression(&self, first: f64) -> f64 {
+        if self.body <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        let rate = |tau: f64| self.state(tau).1;
+        let (mut early, mut late) = (0.0, first.max(f64::MIN_POSITIVE));
+        while rate(late) < 0.0 && late < LATEST {
+            (early, late) = (late, 2.0 * late);
+        }
+        self.state(root(early, late, EXACTLY * late, rate)).0
     }
 }

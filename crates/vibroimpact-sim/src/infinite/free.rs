@@ -10,8 +10,7 @@
 //! the sum is positive, so the bend of the curve is known to full relative precision even when
 //! the body and the structure move at nearly the same speed.
 
-use super::history::{History, Impulse};
-use super::rule::{Tables, series};
+use super::history::Impulse;
 
 /// The impulses as free motion needs them.
 #[derive(Debug, Clone, Default)]
@@ -21,50 +20,11 @@ pub(super) struct Free {
     c: Vec<f64>,
 }
 
-/// Free motion during a contact: impulses much older than a contact lasts act on it as a smooth
-/// function, sampled once.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Forcing {
-    all: Free,
-    near: Free,
-    /// Legendre series on `(0, REACH)` of the bend due to the impulses that are not near.
-    far: Vec<f64>,
-}
-
 /// Time (natural units of the contact) over which far impulses are represented by a series; far
 /// are those of twice this age, so that a series of `n` terms errs by `9.9^(-n)`.
 pub(super) const REACH: f64 = 6.0;
 
-impl Forcing {
-    pub fn new(history: &History, time: f64, impulse: f64, tables: &Tables) -> Forcing {
-        let all = Free::new(history, time, impulse);
-        let (mut near, mut far) = (Free::default(), Free::default());
-        for ((&age, &root), &c) in all.age.iter().zip(&all.root).zip(&all.c) {
-            if age < 2.0 * REACH { &mut near } else { &mut far }.push(age, root, c);
-        }
-        let samples: Vec<f64> = tables.sigma.iter().map(|s| far.bend(REACH * s)).collect();
-        Forcing { near, far: tables.coefficients(&samples), all }
-    }
-
-    /// See [`Free::bend`].
-    pub fn bend(&self, tau: f64) -> f64 {
-        if tau <= REACH { self.near.bend(tau) + series(&self.far, tau / REACH) } else { self.all.bend(tau) }
-    }
-
-    /// See [`Free::rate_gain`].
-    pub fn rate_gain(&self, tau: f64) -> f64 {
-        self.all.rate_gain(tau)
-    }
-}
-
 impl Free {
-    /// With ages in units of `time` and impulses in units of `impulse`.
-    pub fn new(history: &History, time: f64, impulse: f64) -> Free {
-        Free::of(
-            history.impulses().map(|Impulse { age, weight }| Impulse { age: age / time, weight: weight / impulse }),
-        )
-    }
-
     /// From impulses in the units of the free motion.
     pub fn of(impulses: impl Iterator<Item = Impulse>) -> Free {
         let mut free = Free::default();
@@ -89,15 +49,7 @@ impl Free {
         })
     }
 
-    /// `x'(tau) - r`.
-    pub fn rate_gain(&self, tau: f64) -> f64 {
-        tau * self.sum(|age, root, c| {
-            let now = (age + tau).sqrt();
-            c / (now * (now + root))
-        })
-    }
-
-    /// [`bend`](Self::bend) and [`rate_gain`](Self::rate_gain), with a single square root for each impulse.
+    /// [`bend`](Self::bend) and `x'(tau) - r`, with a single square root for each impulse.
     pub fn bend_and_gain(&self, tau: f64) -> (f64, f64) {
         let [bend, gain] = self.sums(|age, root, c| {
             let now = (age + tau).sqrt();
@@ -108,19 +60,9 @@ impl Free {
         (bend, tau * gain)
     }
 
-    /// `x''(tau)`.
-    pub fn acceleration(&self, tau: f64) -> f64 {
-        self.sum(|age, root, c| 0.5 * c * root / ((age + tau) * (age + tau).sqrt()))
-    }
-
     /// Speed of the structure's point at the time origin.
     pub fn structure_speed(&self) -> f64 {
         self.sum(|_, _, c| c)
-    }
-
-    /// Total impulse.
-    pub fn impulse(&self) -> f64 {
-        self.sum(|_, root, c| 2.0 * c * root)
     }
 
     /// Sum over the impulses.

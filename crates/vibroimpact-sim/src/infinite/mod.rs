@@ -1,4 +1,4 @@
-//! A compact body strikes an infinite beam or a thin infinite plate (thesis chapter 2).
+//! A compact body strikes an infinite structure, as a beam or a thin plate (thesis chapter 2).
 //!
 //! # Mathematics
 //!
@@ -23,19 +23,37 @@
 //!
 //! Displacements in the thesis's unit `D` (Eq. 2.11) are `S^(1/3)` times those in `v T`.
 //!
+//! Any other law, on a structure with an impulse response that is a sum of powers of time, obeys the same equation. With time in
+//! units of `T`, where `m y(T) = T`, the force in `F = m v / T` and displacements in `v T`,
+//!
+//! ```text
+//! x(t)  = t - int_0^t [(t - s) + kappa(t - s)] f(s) ds,                                 (1)
+//! x'(t) = 1 - int_0^t [1 + kappa'(t - s)] f(s) ds - kappa(0) f(t),                      (2)
+//! f     = law(x, x'),        kappa(t) = sum_k c_k t^(p_k),   0 <= p_k < 1,              (3)
+//! ```
+//!
+//! where `kappa(0)` is the sum of the `c_k` with `p_k = 0`, and `kappa'` is singular at zero but integrable.
+//!
 //! # Method
 //!
-//! *Contact*: spectral collocation on panels, mapped at touch and separation where `x` is smooth
-//! in the square root of time; exact product integration within a panel; past panels through
-//! closed-form integrals of Legendre polynomials against `sqrt(z - u)`. *Flight*: closed form; the
-//! gap is convex, so the next contact exists exactly when the body still moves towards the
-//! structure, and is found by Newton's method from both sides. *Past*: Gauss rules of the positive
-//! measure `f ds`, by age, on a time origin that moves along. *End*: see
-//! [`Outcome::Sustained`].
+//! *Contact*: spectral collocation on panels. The force is a polynomial in a variable in which it is smooth, the square root of
+//! time at touch and separation; both integrals of it are exact (`kernel.rs`), and (3) at the Gauss nodes gives the nodal forces by
+//! Newton's method (`equations.rs`). Equation (2) is solved only for laws that ask for the rate, and not derived from (1), so that the
+//! rate is as accurate as the compression. A panel is accepted if the impulse of its last two Legendre coefficients is below the
+//! tolerance. If the exponent of a law makes the force at touch nonsmooth, the first panels are short, since the impulse decreases
+//! with the length.
 //!
-//! *Other laws, other structures*: [`solve_law`] solves the same equation for any [`ContactLaw`](contact_models::ContactLaw)
-//! and for any [`Receptance`] that is a sum of powers of time. It shares panels, history and solution with the solver for
-//! `S`, computes the rate from a separate integral, and locates changes of the law's branch.
+//! *Events*: a branch of the law ends where one of its event functions, `a x + b x' - level`, falls below zero. Each is a polynomial
+//! on the panel, which is searched for its first zero and for minima between samples (`event.rs`). The panel that ends there is found
+//! by Newton's method. The contact goes on with the branch that the law returns, with a panel that is again smooth in `sqrt(t)`.
+//!
+//! *Past*: recent panels by closed-form integrals of Legendre polynomials against `sqrt(z - u)` (`root_sum.rs`), others as Gauss rules
+//! of the positive measure `f ds`, by age (`history.rs`, `past.rs`), on a time origin that moves along (`contact.rs`).
+//!
+//! *Flight*: closed form; the gap is convex, so there is at most one next contact, and Newton's method finds it (`flight.rs`).
+//!
+//! *End*: see [`Outcome::Sustained`]. Only for Hertz contact is it known whether a sustained contact ever ends (`sustained.rs`); with
+//! another law the run stops.
 //!
 //! # Example
 //!
@@ -51,31 +69,33 @@
 //! ```
 
 mod asymptotic;
-mod collocate;
 mod contact;
+mod equations;
+mod event;
 mod flight;
 mod free;
-mod general;
 mod groups;
 mod history;
+mod kernel;
+mod law;
+mod natural_times;
 mod panel;
-mod piece;
+mod past;
 mod problem;
 mod receptance;
+mod root_sum;
 mod rule;
 mod semi_analytical;
 mod solution;
 mod solve;
 mod sustained;
 mod turning;
-mod units;
 
 pub use asymptotic::{Attached, attached, displacement_eq_2_47};
-pub use general::solve_law;
 pub use groups::{BeamSection, Groups, Impact, Material, PlateSection};
 pub use problem::{S_RANGE, Settings, Structure};
 pub use receptance::{Receptance, Scale, Term};
 pub use semi_analytical::FirstContact;
 pub use solution::{Extremum, Outcome, Solution, State, SubImpact};
-pub use solve::solve;
+pub use solve::{solve, solve_law};
 pub use turning::{CriticalS, MOST_TURNING_POINTS, TurningPoint, critical_s, turning_point, turning_points};

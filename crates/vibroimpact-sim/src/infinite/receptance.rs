@@ -11,7 +11,7 @@ const POWERS: std::ops::RangeInclusive<f64> = 0.1..=0.9;
 const MOST_TERMS: usize = 8;
 
 /// An impulse response is that of any striker and contact.
-const UNIT: Striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
+pub(super) const UNIT: Striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
 
 /// One term `coefficient t^power` of an impulse response.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,14 +1,9 @@
 //! The result of a run, and its evaluation at any time.
 
-use super::contact::Turn;
 use super::flight::Departure;
-use super::general::flight::Departure as GeneralDeparture;
-use super::panel::elapsed as elapsed_at;
-use super::panel::variable;
-use super::piece::Piece;
+use super::panel::{Panel, Turn};
 use super::problem::{Settings, Structure};
-use super::rule::{Kind, Tables, gauss, series};
-use super::units::Units;
+use super::rule::Tables;
 use crate::StopReason;
 use std::fmt;
 
@@ -135,42 +130,18 @@ const SAME: f64 = 0.5;
 pub(super) struct Flight {
     pub start: f64,
     pub body_travel: f64,
-    pub course: Course,
-}
-
-/// The end of a flight.
-#[derive(Debug, Clone)]
-pub(super) enum Course {
-    Hertz(Departure),
-    General(GeneralDeparture),
-}
-
-impl Course {
-    /// Speed of the body towards the structure.
-    fn body(&self) -> f64 {
-        match self {
-            Course::Hertz(departure) => departure.body,
-            Course::General(departure) => departure.body,
-        }
-    }
-
-    /// Compression (below zero) and its rate, `tau` after separation.
-    fn state(&self, tau: f64) -> (f64, f64) {
-        match self {
-            Course::Hertz(departure) => departure.state(tau),
-            Course::General(departure) => departure.state(tau),
-        }
-    }
+    pub course: Departure,
 }
 
 /// The record of a contact from which its motion is evaluated.
 #[derive(Debug, Clone)]
-struct Record {
-    units: Units,
-    pieces: Vec<Piece>,
-    /// Largest force; `None` if it follows from the extrema of the compression.
-    peak_force: Option<f64>,
-    body_travel: f64,
+pub(super) struct Record {
+    pub panels: Vec<Panel>,
+    pub turns: Vec<Turn>,
+    /// Largest force.
+    pub peak_force: f64,
+    /// Travel of the striker towards the structure up to touch.
+    pub body_travel: f64,
 }
 
 /// Solution of one impact.
@@ -224,27 +195,19 @@ impl Solution {
         }
     }
 
-    /// The turning points of a contact that touches at this time, before the contact itself.
-    pub(super) fn push_turns(&mut self, touch: f64, turns: &[Turn]) {
-        let contact = self.sub_impacts.len();
+    /// Adds a contact.
+    pub(super) fn push(&mut self, contact: SubImpact, record: Record) {
+        let index = self.sub_impacts.len();
         let at = |&Turn { after, compression, minimum }: &Turn| Extremum {
-            contact,
-            time: touch + after,
+            contact: index,
+            time: contact.start + after,
             compression,
             minimum,
         };
-        self.extrema.extend(turns.iter().map(at));
-    }
-
-    pub(super) fn push_contact(&mut self, contact: SubImpact, units: Units, pieces: Vec<Piece>, body_travel: f64) {
+        self.extrema.extend(record.turns.iter().map(at));
+        self.panels += record.panels.len();
         self.sub_impacts.push(contact);
-        self.records.push(Record { units, pieces, peak_force: None, body_travel });
-    }
-
-    /// The same for a contact whose pieces contain the forces, in the units of the impact.
-    pub(super) fn push_general(&mut self, contact: SubImpact, pieces: Vec<Piece>, peak_force: f64, body_travel: f64) {
-        self.sub_impacts.push(contact);
-        self.records.push(Record { units: Units::OF_IMPACT, pieces, peak_force: Some(peak_force), body_travel });
+        self.records.push(record);
     }
 
     /// Decides after a flight, which begins where the solution is known so far, whether to follow the `next` contact, given by
@@ -271,22 +234,7 @@ impl Solution {
 
     /// Largest force of every contact (units of `F`).
     pub fn peak_forces(&self) -> Vec<f64> {
-        let mut peaks: Vec<f64> = self.records.iter().map(|record| record.peak_force.unwrap_or(0.0)).collect();
-        for extremum in self.s.and(Some(&self.extrema)).into_iter().flatten() {
-            if let Some(peak) = peaks.get_mut(extremum.contact) {
-                *peak = peak.max(self.hertz_force(extremum.compression.max(0.0)));
-            }
-        }
-        peaks
-    }
-
-    /// Hertz force at a compression that is not negative.
-    fn hertz_force(&self, compression: f64) -> f64 {
-        self.s.unwrap_or(0.0).sqrt() * compression.powf(1.5)
-    }
-
-    fn tables(&self) -> &'static Tables {
-        Tables::get(self.structure.unwrap_or(Structure::Beam), self.nodes)
+        self.records.iter().map(|record| record.peak_force).collect()
     }
 
     /// Number of separations.
@@ -297,14 +245,14 @@ impl Solution {
     /// Speed away from the structure after the last separation over the speed of impact; `None`
     /// unless the body rebounds.
     pub fn rebound_ratio(&self) -> Option<f64> {
-        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.course.body())).flatten()
+        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.course.body)).flatten()
     }
 
     /// Speed away from the structure after the first separation over the speed of impact (thesis
     /// Fig. 2.6b, `v_f / v`), below zero if the body still moves towards the structure; `None` if
     /// there is no separation.
     pub fn first_rebound_ratio(&self) -> Option<f64> {
-        self.flights.first().map(|flight| -flight.course.body())
+        self.flights.first().map(|flight| -flight.course.body)
     }
 
     /// Decimal digits that two resolutions agree on (see [`relative_uncertainty`](Self::relative_uncertainty)), at most 15.
@@ -331,44 +279,18 @@ impl Solution {
     pub fn in_contact(&self, index: usize, after_touch: f64) -> Option<State> {
         let record = self.records.get(index)?;
         let contact = self.sub_impacts.get(index)?;
-        let theta = after_touch / record.units.time;
-        let last = record.pieces.last()?;
-        let end = last.start + last.h;
-        if !(theta >= 0.0 && theta <= end * (1.0 + 1e-12)) {
+        let last = record.panels.last()?;
+        if !(after_touch >= 0.0 && after_touch <= (last.start + last.h) * (1.0 + 1e-12)) {
             return None;
         }
-        let at = record.pieces.partition_point(|piece| piece.start <= theta).saturating_sub(1);
-        let piece = &record.pieces[at];
-        let tables = self.tables();
-        let panel = piece.panel(tables);
-        let elapsed = ((theta - panel.start) / panel.h).min(1.0);
-        let units = record.units;
-        let compression = units.length * panel.compression(tables, elapsed).max(0.0);
-        let compression_rate = units.speed * panel.rate(tables, elapsed);
-        let (impulse, moment) = partial(panel.kind, panel.h, elapsed, &panel.f_series);
-        let since = panel.h * elapsed;
-        let impulse_total = units.impulse * (piece.impulse + impulse);
-        let moment_total = units.impulse * units.time * (piece.moment + piece.impulse * since + moment);
+        let at = record.panels.partition_point(|panel| panel.start <= after_touch).saturating_sub(1);
+        let (panel, tables) = (&record.panels[at], Tables::get(self.nodes));
+        let elapsed = ((after_touch - panel.start) / panel.h).min(1.0);
+        let (compression, rate) = (panel.compression(tables, elapsed).max(0.0), panel.rate(tables, elapsed));
+        let [force, impulse, moment] = panel.force(tables, elapsed);
         let speed_at_start = -contact.striker_velocity_at_start;
-        let travel = record.body_travel + speed_at_start * after_touch - moment_total;
-        let force = match (self.s, &piece.force) {
-            (Some(s), None) => s.sqrt() * compression * compression.sqrt(),
-            _ => series(&panel.f_series, variable(panel.kind, elapsed)).max(0.0),
-        };
-        Some(State::new([compression, compression_rate, force], travel, speed_at_start - impulse_total))
-    }
-
-    /// Travel of the striker towards the structure up to the end of the last contact recorded.
-    pub(super) fn body_travel_at_end(&self) -> f64 {
-        let (Some(record), Some(contact)) = (self.records.last(), self.sub_impacts.last()) else { return 0.0 };
-        let Some(piece) = record.pieces.last() else { return record.body_travel };
-        let tables = self.tables();
-        let panel = piece.panel(tables);
-        let moment = piece.moment + piece.impulse * panel.h + panel.moment(tables);
-        let time = record.units.time * (panel.start + panel.h);
-        record.body_travel
-            - contact.striker_velocity_at_start * time
-            - record.units.impulse * record.units.time * moment
+        let travel = record.body_travel + speed_at_start * after_touch - moment;
+        Some(State::new([compression, rate, force], travel, speed_at_start - impulse))
     }
 
     /// Sets the error estimate from a finer solution.
@@ -404,28 +326,7 @@ impl Solution {
 impl Flight {
     fn state(&self, tau: f64) -> State {
         let (compression, compression_rate) = self.course.state(tau);
-        let speed = self.course.body();
+        let speed = self.course.body;
         State::new([compression, compression_rate, 0.0], self.body_travel + speed * tau, speed)
     }
-}
-
-/// `int f` and `int (t - s) f ds` from the start of a panel to an elapsed fraction.
-fn partial(kind: Kind, h: f64, elapsed: f64, f_series: &[f64]) -> (f64, f64) {
-    let (from, to) = match kind {
-        Kind::End => (1.0, variable(kind, elapsed)),
-        _ => (0.0, variable(kind, elapsed)),
-    };
-    let (mut impulse, mut moment) = (0.0, 0.0);
-    for (y, w) in gauss(f_series.len() + 2) {
-        let s = from + (to - from) * y;
-        let rate = match kind {
-            Kind::Middle => 1.0,
-            Kind::Start => 2.0 * s,
-            Kind::End => -2.0 * s,
-        };
-        let part = w * (to - from) * rate * series(f_series, s);
-        impulse += h * part;
-        moment += h * h * part * (elapsed - elapsed_at(kind, s));
-    }
-    (impulse, moment)
 }

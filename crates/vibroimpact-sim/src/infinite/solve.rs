@@ -1,76 +1,153 @@
 //! Contacts and flights, one after the other.
 
-use super::contact::{Ending, March};
+use super::contact::{Contact, Ending, Extent, Touch};
 use super::history::History;
+use super::kernel::Kernel;
+use super::law::Scaled;
 use super::problem::{S_RANGE, Settings, Structure};
-use super::solution::{Course, Flight, Outcome, Solution, SubImpact};
-use super::units::Touch;
+use super::receptance::{Receptance, Scale, Term, UNIT};
+use super::solution::{Flight, Outcome, Solution, SubImpact};
 use crate::StopReason;
+use crate::modal::Striker;
+use contact_models::{ContactLaw, Hertz};
 use invalid_input::InvalidInput;
+
+/// Closing speeds up to this part of that of the impact are rounding, where the speed of the striker is one minus all impulses.
+const SLOWEST: f64 = 1e-14;
+/// Part of a contact's duration from which on the next touch is looked for.
+const SOONEST: f64 = 1e-6;
+
+/// Solves the impact of a striker on an infinite structure with any contact law. The solution is in the units of
+/// [`Receptance::scale`]; its [`s`](Solution::s) is `None`, as a law other than Hertz's has no such number.
+///
+/// Whether a contact that lasts ever ends is known for Hertz contact only (see [`solve`]). Here it is computed for 300 of its
+/// natural times and up to [`horizon`](Settings::horizon), and the run then stops ([`StopReason::ContactLasts`]).
+///
+/// # Errors
+/// [`InvalidInput`] if a setting, mass or speed is out of range.
+///
+/// ```
+/// use contact_models::KelvinVoigt;
+/// use vibroimpact_sim::infinite::{Outcome, Receptance, Settings, solve_law};
+/// use vibroimpact_sim::modal::Striker;
+///
+/// // a 4.5 g ball on a 3 mm steel plate, by spring and dashpot
+/// let plate = Receptance::plate(494.5, 23.4)?;
+/// let ball = Striker { mass_kg: 4.5e-3, speed_m_s: 1.0 };
+/// let law = KelvinVoigt::new(1e6, 10.0)?;
+/// let solution = solve_law(&plate, &ball, &law, &Settings::default())?;
+/// assert_eq!(solution.outcome, Outcome::Rebound);
+/// assert!(solution.rebound_ratio().is_some_and(|e| (e - 0.7077).abs() < 1e-4));
+/// # Ok::<(), vibroimpact_sim::InvalidInput>(())
+/// ```
+pub fn solve_law(
+    receptance: &Receptance,
+    striker: &Striker,
+    law: &dyn ContactLaw,
+    settings: &Settings,
+) -> Result<Solution, InvalidInput> {
+    settings.check()?;
+    let scaled = Scaled { law, scale: receptance.scale(striker)? };
+    Ok(solved(&Problem { receptance, law: &scaled, hertz: None }, settings))
+}
 
 /// Solves the impact for one value of `S` (within [`S_RANGE`]).
 ///
 /// # Errors
 /// [`InvalidInput`] if `s` or a setting is out of range.
 pub fn solve(structure: Structure, s: f64, settings: &Settings) -> Result<Solution, InvalidInput> {
-    InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
     settings.check()?;
-    let mut solution = run(structure, s, settings);
+    with_hertz(structure, s, |problem| solved(problem, settings))
+}
+
+/// What is struck, by what, and the number `S` of Hertz contact.
+pub(super) struct Problem<'a> {
+    receptance: &'a Receptance,
+    law: &'a Scaled<'a>,
+    hertz: Option<(Structure, f64)>,
+}
+
+/// The impact whose mass, speed and impulse response are 1, and whose Hertz stiffness is `sqrt(S)`.
+fn with_hertz<R>(structure: Structure, s: f64, then: impl FnOnce(&Problem<'_>) -> R) -> Result<R, InvalidInput> {
+    InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
+    let power = match structure {
+        Structure::Beam => 0.5,
+        Structure::Plate => 0.0,
+    };
+    let receptance = Receptance::new(&[Term { coefficient: 1.0, power }])?;
+    let law = Scaled { law: &Hertz::new(s.sqrt())?, scale: receptance.scale(&UNIT)? };
+    Ok(then(&Problem { receptance: &receptance, law: &law, hertz: Some((structure, s)) }))
+}
+
+/// The solution, with an error estimate if that is wanted.
+fn solved(problem: &Problem<'_>, settings: &Settings) -> Solution {
+    let mut solution = run(problem, settings);
     if settings.estimate_uncertainty {
-        solution.compare(&run(structure, s, &finer(settings)), settings.tolerance);
+        solution.compare(&run(problem, &finer(settings)), settings.tolerance);
     }
-    Ok(solution)
+    solution
 }
 
 /// The settings of the solution with which one is compared.
-pub(super) fn finer(settings: &Settings) -> Settings {
+fn finer(settings: &Settings) -> Settings {
     Settings { nodes: (settings.nodes + 4).min(32), tolerance: (0.1 * settings.tolerance).max(1e-14), ..*settings }
 }
 
 /// Solves once, without error estimate.
-pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution {
-    let mut solution = Solution::empty(Some(structure), Some(s), settings.nodes);
-    let mut history = History::default();
-    let mut touch = Touch { s, time: 0.0, closing: 1.0, body: 1.0 };
-    let mut body_travel = 0.0;
+fn run(problem: &Problem<'_>, settings: &Settings) -> Solution {
+    let Scale { displacement_m, .. } = problem.law.scale;
+    let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+    let (structure, s) = problem.hertz.unzip();
+    let mut solution = Solution::empty(structure, s, settings.nodes);
+    let (mut past, mut touch, mut body_travel) = (History::default(), Touch::first(), 0.0);
     loop {
-        let mut march = March::new(structure, settings, touch, std::mem::take(&mut history));
-        let ending = march.run(false, settings.max_panels.saturating_sub(solution.panels_tried));
-        solution.panels_tried += march.trials;
-        solution.panels += march.pieces.len();
-        let (duration, outcome) = match ending {
-            Ending::Separated(duration) => (duration, Outcome::Rebound),
-            Ending::Sustained(duration) => (duration, Outcome::Sustained),
-            Ending::Minimum(_) => (0.0, Outcome::Stopped(StopReason::Steps)),
-            Ending::Limit(duration) => (duration, Outcome::Stopped(StopReason::Steps)),
-        };
-        let ended = matches!(ending, Ending::Separated(_));
-        let departure = march.departure();
-        let body = departure.body;
+        let mut contact = Contact::new(&kernel, problem.law, settings, touch, past);
+        let budget = settings.max_panels.saturating_sub(solution.panels_tried);
+        let ending = contact.run(Extent::new(problem.hertz, touch.time), budget);
+        let (duration, travel) = (contact.now(), contact.body_travel());
         let end = touch.time + duration;
-        solution.push_turns(touch.time, &march.turns);
-        let contact = SubImpact {
+        solution.panels_tried += contact.trials;
+        solution.known_until = end;
+        let record = contact.record(body_travel);
+        let mut sub_impact = SubImpact {
             start: touch.time,
-            end: ended.then_some(end),
-            duration: ended.then_some(duration),
+            end: None,
+            duration: None,
             closing_speed: touch.closing,
             striker_velocity_at_start: -touch.body,
-            striker_velocity_at_end: ended.then_some(-body),
+            striker_velocity_at_end: None,
         };
-        history = march.history;
-        solution.push_contact(contact, march.units, march.pieces, body_travel);
-        solution.known_until = end;
-        solution.outcome = outcome;
-        if !ended {
+        let memory = match ending {
+            Ending::Released(memory) => memory,
+            Ending::Ended(outcome) => {
+                solution.push(sub_impact, record);
+                solution.outcome = outcome;
+                return solution;
+            }
+        };
+        let (departure, behind) = contact.departure();
+        sub_impact.end = Some(end);
+        sub_impact.duration = Some(duration);
+        sub_impact.striker_velocity_at_end = Some(-departure.body);
+        solution.push(sub_impact, record);
+        solution.outcome = Outcome::Rebound;
+        body_travel += travel;
+        let body = departure.body;
+        let next = departure.next_touch(memory.touch_m / displacement_m, SOONEST * duration);
+        let known = departure.is_known();
+        solution.flights.push(Flight { start: end, body_travel, course: departure });
+        if !known {
+            solution.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
             return solution;
         }
-        body_travel = solution.body_travel_at_end();
-        let next = departure.next_contact();
-        solution.flights.push(Flight { start: end, body_travel, course: Course::Hertz(departure) });
-        let Some((time, closing)) = solution.go_on(next, false, settings) else { return solution };
+        // without a velocity that follows the force at once, and without an indentation that stays, slow contacts keep their digits
+        let slowest = if kernel.instant() == 0.0 && memory.touch_m == 0.0 { 0.0 } else { SLOWEST };
+        let rounding = next.is_some_and(|(_, closing)| closing.is_nan() || closing <= slowest);
+        let Some((time, closing)) = solution.go_on(next, rounding, settings) else { return solution };
         body_travel += body * time;
-        history.rest(time);
-        touch = Touch { s, time: end + time, closing, body };
+        past = behind;
+        past.rest(time);
+        touch = Touch { time: end + time, closing, body, memory };
     }
 }
 
@@ -78,38 +155,42 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
 /// compression that ends contact `n` or falls within it, over the largest compression in that
 /// contact. `None` if there are fewer than `n` contacts, or the limit was reached.
 pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> {
-    let mut history = History::default();
-    let mut touch = Touch { s, time: 0.0, closing: 1.0, body: 1.0 };
-    for k in 1..=n {
-        let mut march = March::new(Structure::Beam, settings, touch, std::mem::take(&mut history));
-        let ending = march.run(k == n, settings.max_panels);
-        let duration = match ending {
-            Ending::Separated(duration) => duration,
-            Ending::Minimum(minimum) if k == n => return Some(minimum / largest(&march)),
-            _ => return None,
-        };
-        let departure = march.departure();
-        if k == n {
-            return Some(departure.least_compression() / largest(&march));
+    let following = |problem: &Problem<'_>| {
+        let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+        let (mut past, mut touch) = (History::default(), Touch::first());
+        for _ in 1..n {
+            let mut contact = Contact::new(&kernel, problem.law, settings, touch, past);
+            let Ending::Released(memory) = contact.run(Extent::new(problem.hertz, touch.time), settings.max_panels)
+            else {
+                return None;
+            };
+            let duration = contact.now();
+            let (departure, behind) = contact.departure();
+            let (time, closing) = departure.next_touch(0.0, SOONEST * duration)?;
+            past = behind;
+            past.rest(time);
+            touch = Touch { time: touch.time + duration + time, closing, body: departure.body, memory };
         }
-        let (time, closing) = departure.next_contact()?;
-        history = march.history;
-        history.rest(time);
-        touch = Touch { s, time: touch.time + duration + time, closing, body: departure.body };
-    }
-    None
+        let mut contact = Contact::new(&kernel, problem.law, settings, touch, past);
+        let ending = contact.run(Extent::new(problem.hertz, touch.time).until_minimum(), settings.max_panels);
+        let largest = contact.turns.iter().map(|turn| turn.compression).fold(f64::MIN_POSITIVE, f64::max);
+        let soonest = SOONEST * contact.now();
+        let least = match ending {
+            Ending::Released(_) => contact.departure().0.least_compression(soonest),
+            Ending::Ended(_) => contact.first_minimum()?,
+        };
+        Some(least / largest)
+    };
+    with_hertz(Structure::Beam, s, following).ok()?
 }
 
 /// Speed of the body towards the beam after the first contact; `None` if it does not end.
 pub(super) fn speed_after_first(s: f64, settings: &Settings) -> Option<f64> {
-    let touch = Touch { s, time: 0.0, closing: 1.0, body: 1.0 };
-    let mut march = March::new(Structure::Beam, settings, touch, History::default());
-    match march.run(false, settings.max_panels) {
-        Ending::Separated(_) => Some(march.body_speed()),
-        _ => None,
-    }
-}
-
-fn largest(march: &March<'_>) -> f64 {
-    march.turns.iter().map(|turn| turn.compression).fold(f64::MIN_POSITIVE, f64::max)
+    let following = |problem: &Problem<'_>| {
+        let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+        let mut contact = Contact::new(&kernel, problem.law, settings, Touch::first(), History::default());
+        let ending = contact.run(Extent::new(problem.hertz, 0.0), settings.max_panels);
+        matches!(ending, Ending::Released(_)).then(|| contact.departure().0.body)
+    };
+    with_hertz(Structure::Beam, s, following).ok()?
 }

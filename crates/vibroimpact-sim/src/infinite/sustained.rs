@@ -22,11 +22,9 @@
 //! leaves, whatever `S`, and no contact lasts.
 
 use super::asymptotic::attached;
-use super::panel::hertz;
-use super::piece::Piece;
+use super::panel::Panel;
 use super::problem::Structure;
 use super::rule::{Kind, Tables};
-use super::units::Units;
 
 /// Monitors the force ratio of one contact.
 pub(super) struct Watch {
@@ -43,14 +41,12 @@ impl Watch {
     }
 
     /// Records the forces in a panel.
-    pub fn see(&mut self, units: &Units, tables: &Tables, piece: &Piece) {
-        if self.structure == Structure::Plate || piece.kind != Kind::Middle {
+    pub fn see(&mut self, tables: &Tables, panel: &Panel) {
+        if self.structure == Structure::Plate || panel.kind != Kind::Middle {
             return;
         }
-        let rule = tables.rule(piece.kind);
-        for (elapsed, &x) in rule.elapsed.iter().zip(&piece.x) {
-            let t = self.touch_time + units.time * (piece.start + piece.h * elapsed);
-            let force = units.impulse / units.time * hertz(x);
+        for (elapsed, force) in tables.rule(panel.kind).elapsed.iter().zip(&panel.force) {
+            let t = self.touch_time + panel.start + panel.h * elapsed;
             self.deviations.push((t, (force / attached(self.structure, t).force - 1.0).abs()));
         }
     }

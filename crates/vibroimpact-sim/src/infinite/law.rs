@@ -1,6 +1,6 @@
 //! A contact law in the units of an impact.
 
-use crate::infinite::receptance::Scale;
+use super::receptance::Scale;
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 
 /// A law whose compressions are in `v T`, rates in `v` and forces in `F`.
@@ -15,6 +15,12 @@ pub(super) struct Force {
     pub force: f64,
     pub stiffness: f64,
     pub damping: f64,
+}
+
+impl Force {
+    pub fn is_finite(&self) -> bool {
+        self.force.is_finite() && self.stiffness.is_finite() && self.damping.is_finite()
+    }
 }
 
 /// `per_compression x + per_rate x' - level` is positive within a branch.

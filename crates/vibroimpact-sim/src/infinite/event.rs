@@ -1,8 +1,8 @@
 //! Event location: where a panel leaves the branch of the law on which it was solved.
 
 use super::law::Margin;
-use crate::infinite::panel::elapsed;
-use crate::infinite::rule::{Kind, Tables, dot, series, series_slope};
+use super::panel::elapsed;
+use super::rule::{Kind, Tables, dot, series, series_slope};
 use crate::panel::root::{EXACTLY, root};
 
 /// A boundary that is met within a panel.
@@ -12,29 +12,27 @@ pub(super) struct Event {
     pub which: usize,
     /// Elapsed fraction of the panel; 0 if the panel is beyond the boundary from its start.
     pub fraction: f64,
-    /// Slope of the event function there in the elapsed fraction.
-    pub slope: f64,
 }
 
-/// The first boundary that the motion on a panel meets. `noise` is the rounding of each event function: a branch may begin on a
-/// boundary, which is met when the event function falls below zero.
+/// The first boundary that the motion on a panel meets, given by the Legendre series of compression and rate; that of the rate
+/// may be empty if no boundary depends on it. `noise` is the rounding of an event function: a branch may begin on a boundary,
+/// which is met when the event function falls below zero.
 pub(super) fn first(
     tables: &Tables,
     kind: Kind,
     margins: &[Margin],
-    x: &[f64],
-    rate: &[f64],
-    noise: &[f64],
+    [x, rate]: [&[f64]; 2],
+    noise: impl Fn(&Margin) -> f64,
 ) -> Option<Event> {
     let mut found: Option<Event> = None;
-    for (which, (margin, &noise)) in margins.iter().zip(noise).enumerate() {
-        let values: Vec<f64> = x.iter().zip(rate).take(tables.p).map(|(&x, &rate)| margin.at(x, rate)).collect();
-        let polynomial = tables.coefficients(&values);
-        if let Some(s) = crossing(tables, kind, &polynomial, noise) {
+    for (which, margin) in margins.iter().enumerate() {
+        let mut polynomial: Vec<f64> = x.iter().map(|c| margin.per_compression * c).collect();
+        polynomial.iter_mut().zip(rate).for_each(|(sum, c)| *sum += margin.per_rate * c);
+        polynomial[0] -= margin.level;
+        if let Some(s) = crossing(tables, kind, &polynomial, noise(margin)) {
             let fraction = elapsed(kind, s);
-            let rate = if kind == Kind::Middle { 1.0 } else { 2.0 * s };
             if found.is_none_or(|other| fraction < other.fraction) {
-                found = Some(Event { which, fraction, slope: series_slope(&polynomial, s) / rate });
+                found = Some(Event { which, fraction });
             }
         }
     }

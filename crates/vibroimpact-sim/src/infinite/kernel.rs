@@ -4,10 +4,10 @@
 //! vanishes at `y = 0`, the integrand is `y^(2 q + 1)` times a smooth function, and the Gauss-Jacobi rule of that
 //! weight integrates it to rounding.
 
-use crate::infinite::history::Impulse;
-use crate::infinite::problem::{NODES, Structure};
-use crate::infinite::receptance::{Receptance, Scale};
-use crate::infinite::rule::{Kind, Tables, gauss, legendre};
+use super::history::Impulse;
+use super::problem::NODES;
+use super::receptance::{Receptance, Scale};
+use super::rule::{Kind, Tables, gauss, legendre};
 use gauss_quad::{FiniteAboveNegOneF64, GaussJacobi};
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
@@ -33,18 +33,11 @@ struct Weights {
 
 /// `kappa(t) = sum_k c_k t^(p_k)` in the units of the impact, so that `kappa(1) = 1`.
 #[derive(Debug)]
-pub(in crate::infinite) struct Kernel {
+pub(super) struct Kernel {
     /// Coefficients and powers.
     pub terms: Vec<(f64, f64)>,
     pub tables: &'static Tables,
     weights: [Weights; 3],
-}
-
-/// The equations of a panel: compression and rate at the nodes and the end are the known terms minus these matrices times the
-/// nodal forces.
-pub(super) struct Matrices {
-    pub compression: Vec<f64>,
-    pub rate: Vec<f64>,
 }
 
 impl Kernel {
@@ -54,8 +47,7 @@ impl Kernel {
         let mass_kg = scale.force_n * scale.time_s / scale.speed_m_s;
         let nondimensional = |c: f64, power: f64| (mass_kg * c * scale.time_s.powf(power) / scale.time_s, power);
         let terms = receptance.terms().iter().map(|term| nondimensional(term.coefficient, term.power)).collect();
-        // of these tables the nodes alone are used here
-        let tables = Tables::get(Structure::Beam, nodes);
+        let tables = Tables::get(nodes);
         let mut kernel = Kernel { terms, tables, weights: Default::default() };
         kernel.weights = [Kind::Start, Kind::Middle, Kind::End].map(|kind| kernel.weights_of(kind));
         kernel
@@ -75,8 +67,8 @@ impl Kernel {
         }
     }
 
-    /// Adds the after-effect of an impulse on compression and rate, at times after its `age`, to their sums. The displacement that it
-    /// causes at once is not part of it.
+    /// Adds the after-effect of an impulse on compression and rate, at times after its `age`, to their sums; `slope` is empty if
+    /// the rate is not asked for. The displacement that it causes at once is not part of it.
     pub fn add_after_effect(&self, impulse: Impulse, after: &[f64], memory: &mut [f64], slope: &mut [f64]) {
         for &(c, power) in self.terms.iter().filter(|term| term.1 > 0.0) {
             let sums = (&mut *memory, &mut *slope);
@@ -90,8 +82,12 @@ impl Kernel {
 
     /// `kappa(t)`.
     pub fn value(&self, t: f64) -> f64 {
-        let term = |&(c, power): &(f64, f64)| c * if power == 0.5 { t.sqrt() } else { t.powf(power) };
-        self.terms.iter().map(term).sum()
+        self.terms.iter().map(|&(c, power)| c * raise(t, power)).sum()
+    }
+
+    /// `kappa'(t)` for `t > 0`.
+    pub fn slope(&self, t: f64) -> f64 {
+        self.terms.iter().map(|&(c, power)| c * power * raise(t, power) / t).sum()
     }
 
     /// The instantaneous part of the response: the velocity of the point under a unit force.
@@ -99,27 +95,32 @@ impl Kernel {
         self.terms.iter().filter(|term| term.1 == 0.0).map(|term| term.0).sum()
     }
 
-    /// The equations of a panel of length `h`.
-    pub(super) fn matrices(&self, kind: Kind, h: f64) -> Matrices {
-        let weights = &self.weights[kind as usize];
-        let mut compression: Vec<f64> = weights.linear.iter().map(|w| h * h * w).collect();
-        let mut rate: Vec<f64> = weights.impulse.iter().map(|w| h * w).collect();
-        let add = |sums: &mut Vec<f64>, factor: f64, weights: &[f64]| {
-            sums.iter_mut().zip(weights).for_each(|(sum, w)| *sum += factor * w);
-        };
-        for (&(c, power), (memory, slope)) in self.terms.iter().zip(&weights.memory) {
-            add(&mut compression, c * h * h.powf(power), memory);
-            add(&mut rate, c * power * h.powf(power), slope);
+    /// Weights of the nodal forces on a panel of length `h` in the compression, a row for each node and one for the end.
+    pub(super) fn weigh_compression(&self, kind: Kind, h: f64, weights: &mut Vec<f64>) {
+        let of = &self.weights[kind as usize];
+        weights.clear();
+        weights.extend(of.linear.iter().map(|w| h * h * w));
+        for (&(c, power), (memory, _)) in self.terms.iter().zip(&of.memory) {
+            add_row(weights, c * h * raise(h, power), memory);
+        }
+    }
+
+    /// The same for the rate of compression.
+    pub(super) fn weigh_rate(&self, kind: Kind, h: f64, weights: &mut Vec<f64>) {
+        let of = &self.weights[kind as usize];
+        weights.clear();
+        weights.extend(of.impulse.iter().map(|w| h * w));
+        for (&(c, power), (_, slope)) in self.terms.iter().zip(&of.memory) {
+            add_row(weights, c * power * raise(h, power), slope);
         }
         let p = self.tables.p;
         let instant = self.instant();
-        (0..p).for_each(|i| rate[i * p + i] += instant);
+        (0..p).for_each(|i| weights[i * p + i] += instant);
         // at the end of the panel the force is that of its polynomial
         let end = if kind == Kind::End { -1.0 } else { 1.0 };
         for (k, value) in legendre(end, p).into_iter().enumerate() {
-            add_row(&mut rate[p * p..], instant * value, &self.tables.to_legendre[k * p..(k + 1) * p]);
+            add_row(&mut weights[p * p..], instant * value, &self.tables.to_legendre[k * p..(k + 1) * p]);
         }
-        Matrices { compression, rate }
     }
 
     /// Weights of `int f ds` and `int (end - s) f ds` over a whole panel of length 1.
@@ -146,11 +147,25 @@ fn add_power(
     after: &[f64],
     (memory, slope): (&mut [f64], &mut [f64]),
 ) {
+    if slope.is_empty() {
+        let effects = after.iter().map(|tau| weight * (c * raise(age + tau)));
+        memory.iter_mut().zip(effects).for_each(|(memory, effect)| *memory += effect);
+        return;
+    }
     for ((memory, slope), tau) in memory.iter_mut().zip(slope).zip(after) {
         let t = age + tau;
         let value = weight * (c * raise(t));
         *memory += value;
         *slope += power * value / t;
+    }
+}
+
+/// `t^power`.
+fn raise(t: f64, power: f64) -> f64 {
+    match power {
+        0.0 => 1.0,
+        0.5 => t.sqrt(),
+        _ => t.powf(power),
     }
 }
 
@@ -257,7 +272,7 @@ mod tests {
     #[test]
     fn product_weights_match_closed_forms() {
         for nodes in [8, 20, 32] {
-            let tables = Tables::get(Structure::Beam, nodes);
+            let tables = Tables::get(nodes);
             for power in [-0.9_f64, -0.5, -0.25, 0.0, 0.1, 0.5, 0.8, 1.0] {
                 // of weights whose sum is 1 / (power + 1) at most
                 let rounding = 4e-14 / (power + 1.0);
