@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::gauge::ForceRecord;
+use super::gauge::{FORCE, FORCE_FILE, ForceRecord, SD};
 use super::quantity::Quantity;
 use crate::input::{Row as Cells, Table, read_bytes};
 use crate::scene::FieldPath;
@@ -15,10 +15,6 @@ use crate::scene::{InvalidInput, SceneError, table_path};
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 10_000;
-pub(super) const FORCE_FILE: &str = "force_file";
-/// The name of the measured force, in whose column of standard deviations its noise is stated.
-pub(super) const FORCE: &str = "force_n";
-pub(super) const SD: &str = "_sd";
 
 const NEEDED: &str = "a table of comma-separated values whose line of names contains fields of the scene and what was \
                       measured: quantities, their standard deviations (restitution_sd and so on), or force_file";

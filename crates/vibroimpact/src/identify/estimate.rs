@@ -2,13 +2,14 @@
 
 use fitting::{Information, Profile, Start};
 
-use super::data::{Data, FORCE};
+use super::data::Data;
 use super::derivative::Prediction;
 use super::design::{Measured, design};
 use super::determined::undetermined;
 use super::forward::Model;
 use super::free::Free;
 use super::freedom::quantiles;
+use super::gauge::FORCE;
 use super::judge::lack_of_fit;
 use super::quantity::Quantity;
 use super::summary::{Identification, Identified, Noise, Predicted, ProfileCurve, RecordFit, StartFound};

@@ -9,9 +9,9 @@ use contact_models::Law;
 use serde_json::{Value, json};
 use vibroimpact_sim::modal::{History, Settings, Solution};
 
-use super::data::{Data, FORCE_FILE, Row};
+use super::data::{Data, Row};
 use super::free::Free;
-use super::gauge::Signal;
+use super::gauge::{FORCE_FILE, Signal};
 use super::quantity::Quantity;
 use crate::impact::Impact;
 use crate::in_scene::in_scene;

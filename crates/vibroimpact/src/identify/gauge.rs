@@ -5,9 +5,15 @@ use fitting::chi_square_tail;
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::History;
 
-use super::data::{FORCE, FORCE_FILE, SD};
 use crate::input::{Row, Table};
 use crate::scene::json::number;
+
+/// Column of a table of measurements with the names of the files of force histories.
+pub(super) const FORCE_FILE: &str = "force_file";
+/// The name of the measured force, in whose column of standard deviations its noise is stated.
+pub(super) const FORCE: &str = "force_n";
+/// Ending of the names of columns of standard deviations.
+pub(super) const SD: &str = "_sd";
 
 /// Most samples of a history, and least.
 const MOST: usize = 100_000;

@@ -7,9 +7,9 @@ use fitting::{
 };
 use invalid_input::InvalidInput;
 
-use super::data::FORCE;
 use super::derivative::{Derivatives, Prediction, derivatives, predict};
 use super::forward::Model;
+use super::gauge::FORCE;
 use crate::scene::json::number;
 
 /// Relative change of the sum of squares at which a search ends; its derivatives are differences.

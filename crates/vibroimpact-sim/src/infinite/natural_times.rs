@@ -1,0 +1,43 @@
+//! How long a contact lasts by its law.
+
+use super::kernel::Kernel;
+use super::law::Scaled;
+use contact_models::Branch;
+
+/// Times that characterise a contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NaturalTimes {
+    /// In which the law, pressed at the closing speed, would take half of that speed from the striker.
+    pub contact: f64,
+    /// In which its damping relaxes.
+    pub relaxation: f64,
+}
+
+impl NaturalTimes {
+    pub fn new(kernel: &Kernel, law: &Scaled<'_>, branch: &Branch, level: f64, closing: f64) -> NaturalTimes {
+        // the part of half the speed that the law takes in a time
+        let taken =
+            |h: f64| law.force(branch, level + closing * h, 0.0).force * (h + kernel.value(h)) / (0.5 * closing);
+        let mut h = 2.0_f64.powi(100);
+        while h > 2.0_f64.powi(-200) && taken(h) > 1.0 {
+            h *= 0.5;
+        }
+        // between this time and twice of it, as a power
+        let (below, above) = (taken(h).ln(), taken(2.0 * h).ln());
+        let part = -below / (above - below);
+        if (0.0..1.0).contains(&part) {
+            h *= part.exp2();
+        }
+        let there = law.force(branch, level + closing * h, closing);
+        let relaxation = there.damping / there.stiffness;
+        NaturalTimes { contact: h, relaxation: if relaxation.is_finite() { relaxation.abs() } else { 0.0 } }
+    }
+
+    /// Whether the force or a boundary of a branch depends on the rate. On a branch the force does so wherever it is not zero or
+    /// nowhere (see [`ContactLaw::force`](contact_models::ContactLaw::force)): it is asked at a compression and a way from it.
+    pub fn follows_rate(&self, law: &Scaled<'_>, branch: &Branch, x: f64, closing: f64) -> bool {
+        let way = closing * self.contact;
+        let damped = [x - way, x, x + way].iter().any(|&x| law.force(branch, x, closing).damping != 0.0);
+        damped || law.margins(branch).iter().any(|margin| margin.per_rate != 0.0)
+    }
+}
