@@ -288,6 +288,21 @@ fn usage_errors_exit_with_2_as_well() {
     }
 }
 
+/// A structure that is nearly rigid returns the ball as a wall does, also where its number `S` lies below that of the least
+/// flexible structure in the thesis's sense.
+#[test]
+fn a_nearly_rigid_structure_is_a_wall() {
+    let mut altered = scene();
+    altered["structure"] = json!({ "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+                                   "width_m": 3.0, "thickness_m": 3.0 });
+    altered["striker"] = json!({ "density_kg_m3": 7800, "radius_m": 1e-3, "speed_m_s": 0.5 });
+    let scene = Scene::from_json(&altered.to_string()).unwrap();
+    assert!(scene.infinite_impact().unwrap().groups().unwrap().s < 1e-12);
+    let (_, solution) = scene.solve_infinite().unwrap();
+    let loss = 1.0 - solution.rebound_ratio().unwrap();
+    assert!(loss > 0.0 && loss < 1e-3, "{loss}");
+}
+
 #[test]
 fn scenes_that_do_not_fit_are_refused_by_field() {
     for (pointer, value, part) in [

@@ -22,15 +22,15 @@ pub struct Posed {
 }
 
 impl Posed {
-    /// Solves the impact, by the solver made for Hertz contact if that is the law; the scale holds the units of the
-    /// solution.
+    /// Solves the impact, by its number `S` if it is Hertz contact; the scale holds the units of the solution. A structure that is
+    /// so nearly rigid that `S` lies below its range is one for which any law can be solved.
     ///
     /// # Errors
     /// Numbers that are out of the range of the solver.
     pub fn solve(&self, settings: &infinite::Settings) -> Result<(Scale, Solution), InvalidInput> {
-        if let Some(impact) = self.hertz {
-            let groups = impact.groups()?;
-            return Ok((groups.into(), infinite::solve(impact.structure, groups.s, settings)?));
+        let hertz = self.hertz.map(|impact| Ok((impact.structure, impact.groups()?))).transpose()?;
+        if let Some((structure, groups)) = hertz.filter(|(_, groups)| groups.s >= *infinite::S_RANGE.start()) {
+            return Ok((groups.into(), infinite::solve(structure, groups.s, settings)?));
         }
         let scale = self.receptance.scale(&self.striker)?;
         Ok((scale, infinite::solve_law(&self.receptance, &self.striker, &self.law, settings)?))
