@@ -37,7 +37,13 @@ pub(crate) struct Change<'a> {
 
 impl<'a> Change<'a> {
     /// Computes the derivatives from the neighbouring assemblies, whose modes have the same order within their bodies.
-    pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, stencil: Stencil<4>) -> Change<'a> {
+    /// The laws of each contact at these neighbours are needed only if they change.
+    pub fn new(
+        system: &System,
+        posed: [&Posed; 4],
+        laws: Option<Vec<[&'a dyn ContactLaw; 4]>>,
+        stencil: Stencil<4>,
+    ) -> Change<'a> {
         let n = system.modes.len();
         let mut change = Change {
             amplitude: vec![0.0; n],
@@ -46,7 +52,7 @@ impl<'a> Change<'a> {
             psi: Vec::new(),
             fade: vec![0.0; n],
             stretch: vec![0.0; n],
-            laws: laws_change.then(|| (0..system.links.len()).map(|c| posed.map(|posed| posed.laws[c])).collect()),
+            laws,
             loads: LoadChange::new(posed, stencil),
             stencil,
             moves_modes: false,
@@ -84,6 +90,24 @@ impl<'a> Change<'a> {
         }
         change.moves_modes = change.fade.iter().chain(&change.stretch).any(|value| *value != 0.0);
         change
+    }
+
+    /// The same in a unit of time of which a second has so many, for an assembly without loads, and with the laws in this unit.
+    pub fn in_unit<'b>(&self, per_second: f64, laws: Option<[&'b dyn ContactLaw; 4]>) -> Change<'b> {
+        let per_unit = |values: &[f64]| values.iter().map(|value| value / per_second).collect();
+        Change {
+            amplitude: self.amplitude.clone(),
+            rate: per_unit(&self.rate),
+            gap_m: self.gap_m.clone(),
+            psi: self.psi.clone(),
+            fade: per_unit(&self.fade),
+            stretch: self.stretch.clone(),
+            laws: laws.map(|four| vec![four; self.gap_m.len()]),
+            loads: None,
+            stencil: self.stencil,
+            moves_modes: self.moves_modes,
+            critical: self.critical.clone(),
+        }
     }
 
     /// A change of one amplitude or rate at the start alone.

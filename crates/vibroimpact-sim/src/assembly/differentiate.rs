@@ -219,7 +219,11 @@ impl Solver<'_> {
         let changes: Vec<Change> = around
             .iter()
             .zip(parameters)
-            .map(|(posed, by)| Change::new(&self.system, posed.each_ref(), by.changes_laws, Stencil::new(by.offsets)))
+            .map(|(posed, by)| {
+                let laws = |c| posed.each_ref().map(|posed| posed.laws[c]);
+                let laws = by.changes_laws.then(|| (0..self.system.links.len()).map(laws).collect());
+                Change::new(&self.system, posed.each_ref(), laws, Stencil::new(by.offsets))
+            })
             .collect();
         let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
         let mut expansions = Expansions::default();

@@ -4,13 +4,12 @@ use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
 use super::solve::{COARSER, Impact, Run, SECOND, Solved, Solver};
-use super::time_unit::Unit;
-use crate::assembly::Assembly;
+use super::time_unit::{Law, Unit};
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
 use crate::assembly::solve::Keep;
-use crate::assembly::system::{Span, System};
+use crate::assembly::system::System;
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use crate::concurrent::both;
 use contact_models::ContactLaw;
@@ -200,10 +199,11 @@ impl Solver {
         }
         let coarser = coarser.unwrap_or_else(|| self.in_other_unit(impact, BESIDE, Keep::Motion).0);
         let (unit, factor) = COARSER[BESIDE];
+        let around = Around::new(self, impact, parameters);
         let (coarse, found) = both(
             settings.concurrent,
-            || self.other(BESIDE).along(unit, impact, parameters, &coarser),
-            || self.along(SECOND, impact, parameters, &fine),
+            || self.other(BESIDE).along(unit, impact, &around, &coarser),
+            || self.along(SECOND, impact, &around, &fine),
         );
         let (changes, touches) = match found {
             Ok(found) => found,
@@ -224,52 +224,42 @@ impl Solver {
     }
 
     /// Derivatives along a run that was computed in this solver's unit of time; impact, parameters and derivatives are in seconds.
-    fn along(
-        &self,
-        unit: Unit,
-        impact: &Impact,
-        parameters: &[Parameter],
-        run: &Run,
-    ) -> Result<AllChanges, NoDerivative> {
+    fn along(&self, unit: Unit, impact: &Impact, around: &Around, run: &Run) -> Result<AllChanges, NoDerivative> {
         if run.outcome != Outcome::Rebound {
             return Err(NoDerivative::Outcome);
         }
         let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
-        let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
-        let in_unit = |at: &Posing| (unit.modes(&at.structure.modes), unit.striker(at.striker), unit.start(at.start));
-        let around: Vec<_> = parameters.iter().map(|by| by.neighbours.each_ref().map(in_unit)).collect();
-        let laws: Vec<_> = parameters.iter().map(|by| by.neighbours.map(|at| unit.law(at.law))).collect();
-        let pose =
-            |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, self.moved(), striker, start);
-        let assembly = pose(self.modes(), &striker, &start);
+        let assembly = posed::assembly(self.modes(), self.moved(), &striker, &start);
         let posed = assembly.with_laws(vec![&law]);
         let system = System::new(&posed);
-        let mut changes = Vec::with_capacity(parameters.len());
-        let mut sides = Vec::with_capacity(parameters.len());
-        let assemblies: Vec<[Assembly<()>; 4]> = around
-            .iter()
-            .map(|four| four.each_ref().map(|(modes, striker, start)| pose(modes, striker, start)))
-            .collect();
-        for ((assemblies, laws), by) in assemblies.iter().zip(&laws).zip(parameters) {
-            let posed: [Posed; 4] = array::from_fn(|i| assemblies[i].with_laws(vec![&laws[i]]));
-            let stencil = Stencil::new(by.offsets);
-            changes.push(Change::new(&system, posed.each_ref(), by.changes_law, stencil));
-            sides.push(posed.each_ref().map(|posed| system.link(posed.sides[0]).sides[0].clone()));
-        }
-        let around = around.iter().zip(parameters).map(|(around, by)| (Stencil::new(by.offsets), around)).collect();
-        let along = Along {
-            modes: self.modes(),
-            moved: self.moved(),
-            impact: &impact,
-            around,
-            posed: &posed,
-            system: &system,
-            changes,
-            sides,
+        let laws: Vec<_> = around.parameters.iter().map(|by| by.neighbours.map(|at| unit.law(at.law))).collect();
+        let in_unit = |((change, by), laws): ((&Change, &Parameter), _)| {
+            let laws: &[Law; 4] = laws;
+            change.in_unit(unit.0, by.changes_law.then(|| laws.each_ref().map(|law| law as &dyn ContactLaw)))
         };
-        let (changes, touches) = along.changes(run)?;
-        let in_seconds = |found: Result<Changes, NoDerivative>| Ok(found?.in_seconds(unit));
-        Ok((changes.into_iter().map(in_seconds).collect(), touches.map(|speed| speed * unit.0)))
+        let changes: Vec<Change> = around.changes.iter().zip(around.parameters).zip(&laws).map(in_unit).collect();
+        let stretches = &run.record.stretches;
+        let found = tangents(&posed, &system, stretches, (&changes, None), &mut Expansions::default())?;
+        let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
+        let pick = |values: &[f64]| {
+            let mut all = vec![0.0; self.modes().len()];
+            let places = &system.place[posed::STRUCTURE];
+            self.moved().iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
+            all
+        };
+        let (ended, striker) = (pick(end), &system.links[0].sides[0]);
+        let velocity = |rate: &[f64]| striker.as_ref().map_or(0.0, |side| side.sum(rate));
+        let of = |(tangent, d): (Result<Tangent, NoDerivative>, usize)| {
+            let tangent = tangent?;
+            let by_mass = striker.as_ref().map_or(0.0, |side| around.weight[d] * end[side.modes.start]);
+            let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
+            let velocities = [velocity(end), velocity(&tangent.rate) + by_mass].map(|speed| speed * unit.0);
+            let motions = [&ended, &rate].map(|motion| motion.iter().map(|rate| rate * unit.0).collect::<Vec<f64>>());
+            let restitution = restitution_change(self.modes(), impact, &around.parameters[d], velocities, &motions);
+            let numbers = [restitution, tangent.time_s, velocities[1] / unit.0];
+            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate }.in_seconds(unit))
+        };
+        Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches.map(|speed| speed * unit.0)))
     }
 
     /// The modes that move the contact, at the value itself or at a neighbour.
@@ -282,49 +272,29 @@ impl Solver {
     }
 }
 
-/// The numbers of a neighbouring impact in a unit of time: modes, striker and start.
-type Near = (Vec<Mode>, Striker, Start);
-
-/// Data for the derivatives of one impact, all in the unit of time of its run.
-struct Along<'a> {
-    modes: &'a [Mode],
-    moved: &'a [usize],
-    impact: &'a Impact<'a>,
-    /// For each parameter.
-    around: Vec<(Stencil<4>, &'a [Near; 4])>,
-    posed: &'a Posed<'a>,
-    system: &'a System,
+/// How the numbers that define an impact change with each parameter, all in seconds.
+struct Around<'a> {
+    parameters: &'a [Parameter<'a>],
     changes: Vec<Change<'a>>,
-    /// For each parameter the weight of the striker's motion at the neighbours.
-    sides: Vec<[Option<Span>; 4]>,
+    /// Change of the weight of the striker's own mode in its motion.
+    weight: Vec<f64>,
 }
 
-impl Along<'_> {
-    /// Derivatives along the motion of one run, and the speeds of its slowest and fastest touch.
-    fn changes(&self, run: &Run) -> Result<AllChanges, NoDerivative> {
-        let stretches = &run.record.stretches;
-        let found = tangents(self.posed, self.system, stretches, (&self.changes, None), &mut Expansions::default())?;
-        let end = stretches.last().ok_or(NoDerivative::Outcome)?.rate.as_slice();
-        let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
-        let striker = &self.system.links[0].sides[0];
-        let pick = |values: &[f64]| {
-            let mut all = vec![0.0; self.modes.len()];
-            let places = &self.system.place[posed::STRUCTURE];
-            self.moved.iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
-            all
+impl<'a> Around<'a> {
+    fn new(solver: &Solver, impact: &Impact, parameters: &'a [Parameter<'a>]) -> Around<'a> {
+        let pose =
+            |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, solver.moved(), striker, start);
+        let assembly = pose(solver.modes(), impact.striker, impact.start);
+        let system = System::new(&assembly.with_laws(vec![impact.law]));
+        let of = |by: &'a Parameter<'a>| {
+            let near = by.neighbours.each_ref().map(|at| pose(&at.structure.modes, at.striker, at.start));
+            let posed: [Posed; 4] = array::from_fn(|i| near[i].with_laws(vec![by.neighbours[i].law]));
+            let stencil = Stencil::new(by.offsets);
+            let weight = |at: &Posing| posed::weight(at.striker, &at.structure.modes);
+            (Change::new(&system, posed.each_ref(), None, stencil), stencil.slope(by.neighbours.each_ref().map(weight)))
         };
-        type Found<'a> = (Result<Tangent, NoDerivative>, &'a (Stencil<4>, &'a [Near; 4]));
-        let of = |((tangent, around), sides): (Found, &[Option<Span>; 4])| {
-            let tangent = tangent?;
-            let by_mass = around.0.slope(sides.each_ref().map(|side| velocity_of(side, end)));
-            let velocity = [velocity_of(striker, end), velocity_of(striker, &tangent.rate) + by_mass];
-            let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let restitution = restitution_change(self.modes, self.impact, *around, velocity, [&pick(end), &rate]);
-            let numbers = [restitution, tangent.time_s, velocity[1]];
-            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
-        };
-        let changes = found.tangents.into_iter().zip(&self.around).zip(&self.sides).map(of).collect();
-        Ok((changes, found.touches))
+        let (changes, weight) = parameters.iter().map(of).unzip();
+        Around { parameters, changes, weight }
     }
 }
 
@@ -332,19 +302,20 @@ impl Along<'_> {
 fn restitution_change(
     modes: &[Mode],
     impact: &Impact,
-    (stencil, around): (Stencil<4>, &[Near; 4]),
+    by: &Parameter,
     [velocity, velocity_change]: [f64; 2],
-    [end, end_change]: [&[f64]; 2],
+    [end, end_change]: &[Vec<f64>; 2],
 ) -> f64 {
     let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
         modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
     };
-    let by_shape = stencil.slope(around.each_ref().map(|(modes, ..)| rigid(modes, end)));
+    let stencil = Stencil::new(by.offsets);
+    let by_shape = stencil.slope(by.neighbours.each_ref().map(|at| rigid(&at.structure.modes, end)));
     let parting = velocity - rigid(modes, end);
     let parting_change = velocity_change - by_shape - rigid(modes, end_change);
     let before = impact.striker.speed_m_s + rigid(modes, &impact.start.rate);
-    let before_of = |(modes, striker, start): &Near| striker.speed_m_s + rigid(modes, &start.rate);
-    let before_change = stencil.slope(around.each_ref().map(before_of));
+    let before_of = |at: &Posing| at.striker.speed_m_s + rigid(&at.structure.modes, &at.start.rate);
+    let before_change = stencil.slope(by.neighbours.each_ref().map(before_of));
     (parting_change - parting / before * before_change) / before
 }
 

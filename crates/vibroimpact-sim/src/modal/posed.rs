@@ -19,6 +19,11 @@ pub(crate) fn mass_kg(striker: &Striker, modes: &[Mode]) -> Option<f64> {
     (striker.speed_m_s != 0.0).then_some(IMMOVABLE / inverse)
 }
 
+/// Weight of the striker's own mode in its motion (kg^-1/2); zero for a stop at rest.
+pub(crate) fn weight(striker: &Striker, modes: &[Mode]) -> f64 {
+    mass_kg(striker, modes).map_or(0.0, |mass_kg| mass_kg.sqrt().recip())
+}
+
 /// The impact of a striker on some modes of the structure, without the law of their contact.
 pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start: &Start) -> Assembly<()> {
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();

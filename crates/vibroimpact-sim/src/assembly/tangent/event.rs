@@ -1,8 +1,7 @@
 //! Derivatives of an event: of its time, and of the law's transition.
 
-use super::panel::Moved;
 use super::walk::{
-    IntervalChange, LAW_STEP, NUMBERS, Numbers, Tangent, Walk, internal, numbers, shifted, size_of, sum,
+    IntervalChange, LAW_STEP, Moved, NUMBERS, Numbers, Tangent, Walk, internal, numbers, shifted, size_of, sum,
 };
 use crate::assembly::dense::Event;
 use crate::assembly::no_derivative::NoDerivative;

@@ -13,10 +13,11 @@ use std::rc::Rc;
 pub(super) struct Expansion {
     pub rotation: Rotation,
     pub forced: Forced,
-    /// `[p n + q]` over the closed contacts.
-    pub own: Vec<[Nodal; Q]>,
-    /// The same for each change: the weights of `F`, and of `t F` and `t F'` where modes change.
-    pub changed: Vec<Vec<[Option<[Nodal; Q]>; 3]>>,
+    /// Responses of all modes together, at first `[p n + q]` over the closed contacts.
+    pub responses: Vec<[Nodal; Q]>,
+    /// For each change and pair of contacts, `[(d n + p) n + q]`, where its responses are among these: to `F`, and to `t F` and
+    /// `t F'` where modes change.
+    pub changed: Vec<[Option<usize>; 3]>,
     /// The modes next to critical damping whose damping changes.
     critical: BTreeMap<usize, ByDamping>,
 }
@@ -29,12 +30,13 @@ impl Expansion {
 
     /// Adds the change of the responses of these modes to the weights of `F`, with the products of the contacts' weights.
     fn add_critical(&mut self, changes: &[Change], products: &[Vec<f64>]) {
-        for (change, pairs) in changes.iter().zip(&mut self.changed) {
+        for (change, pairs) in changes.iter().zip(self.changed.chunks_mut(products.len().max(1))) {
             for (k, by_zeta) in &change.critical {
                 let Some(mode) = self.critical.get(k) else { continue };
                 for (product, [of_force, _, _]) in products.iter().zip(&mut *pairs) {
-                    let of_force = of_force.get_or_insert([[0.0; Q]; Q]);
-                    for (column, response) in of_force.iter_mut().zip(&mode.compliance) {
+                    let place = *of_force.get_or_insert(self.responses.len());
+                    self.responses.resize(self.responses.len().max(place + 1), [[0.0; Q]; Q]);
+                    for (column, response) in self.responses[place].iter_mut().zip(&mode.compliance) {
                         add(column, by_zeta * product[*k], response);
                     }
                 }
@@ -63,7 +65,7 @@ impl Expansions {
                 weights.push(system.shared(p, q));
             }
         }
-        let mut places = Vec::new();
+        let mut changed = Vec::new();
         for change in changes {
             let modes_move = change.moves_modes;
             for pair in 0..n * n {
@@ -98,13 +100,13 @@ impl Expansions {
                 } else {
                     place[0] = None;
                 }
-                places.push(place);
+                changed.push(place);
             }
         }
         // a flight needs nothing but free motion
         let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
         let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
-        let whole: Vec<[Nodal; Q]> = elastic
+        let responses = elastic
             .iter()
             .zip(&weights)
             .map(|(elastic, weights)| {
@@ -117,10 +119,7 @@ impl Expansions {
             (*k, if closed.is_empty() { ByDamping::of_free_motion(mode, h) } else { ByDamping::new(mode, h) })
         };
         let critical = changes.iter().flat_map(|change| &change.critical).map(by_damping).collect();
-        let pick = |place: &[Option<usize>; 3]| place.map(|place| place.map(|i| whole[i]));
-        let changed = places.chunks(n.max(1) * n.max(1)).map(|places| places.iter().map(pick).collect()).collect();
-        let own = whole[..n * n].to_vec();
-        let mut expansion = Expansion { rotation, forced, own, changed, critical };
+        let mut expansion = Expansion { rotation, forced, responses, changed, critical };
         expansion.add_critical(changes, &weights[..n * n]);
         let expansion = Rc::new(expansion);
         if step_s(level_within(h)) == h {

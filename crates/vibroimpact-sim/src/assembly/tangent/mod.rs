@@ -53,9 +53,9 @@ use super::system::System;
 use crate::panel::legendre::{Legendre, Q, add};
 use contact_models::Force;
 pub(crate) use expansion::Expansions;
-use panel::{Moved, Passage, Solved};
-use walk::Walk;
+use panel::{Passage, Solved};
 pub(crate) use walk::{IntervalChange, Tangent};
+use walk::{Moved, Walk};
 
 /// All tangents of a record, or the reasons why there are none.
 pub(crate) struct Tangents {
@@ -133,12 +133,12 @@ impl Walk<'_> {
             force: Vec::new(),
             overlap: Vec::new(),
         });
-        let moved = moved.collect();
+        let mut moved: Vec<Moved> = moved.collect();
         let state = [first.amplitude.as_slice(), &first.rate];
         let bend = self.acceleration(first.start_s, state, &[], 0.0);
         let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
         let end = Arrival { length_s: 0.0, ending: ending(first), state, end_s: None, next: first };
-        self.arrive(&end, &[], moved, Some(&slide));
+        self.arrive(&end, &[], &mut moved, Some(&slide));
     }
 
     /// From the start of a stretch to that of the next one; `end_s` has the changes of that time if the record ends there.
@@ -146,15 +146,16 @@ impl Walk<'_> {
         let h = stretch.length_s;
         // the relative motion jumps at a break
         let mut after = None;
-        let (mut end_a, mut end_b) = (next.amplitude.clone(), next.rate.clone());
+        let mut before = None;
         while next.start_s >= after.as_ref().unwrap_or(&self.loads).next_break_s() {
             let loads = after.get_or_insert_with(|| self.loads.clone());
-            let [mut jump, mut jump_rate] = [(); 2].map(|()| vec![0.0; end_a.len()]);
+            let [mut jump, mut jump_rate] = [(); 2].map(|()| vec![0.0; next.rate.len()]);
             loads.pass_break(self.system, next.start_s, &mut jump, &mut jump_rate);
+            let [end_a, end_b] = before.get_or_insert_with(|| [next.amplitude.clone(), next.rate.clone()]);
             end_a.iter_mut().zip(&jump).for_each(|(end, jump)| *end -= jump);
             end_b.iter_mut().zip(&jump_rate).for_each(|(end, jump)| *end -= jump);
         }
-        let state = [end_a.as_slice(), &end_b];
+        let state = before.as_ref().map_or([next.amplitude.as_slice(), &next.rate], |[a, b]| [a.as_slice(), b]);
         let ending = match (ending(next), end_s) {
             // the time of an event at a break cannot shift separately
             (Ending::Event(..), _) if after.is_some() => return Err(NoDerivative::Break { time_s: next.start_s }),
@@ -169,7 +170,7 @@ impl Walk<'_> {
             let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
             let n = closed.len();
             let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
-            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q]);
+            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.responses[p * n + q]);
             self.blocks.factor(&values, &response, h);
         }
         let from = [stretch.amplitude.as_slice(), &stretch.rate];
@@ -178,7 +179,8 @@ impl Walk<'_> {
             self.acceleration(stretch.start_s + h, state, &solved, 1.0),
         ];
         let passage = Passage { from: stretch, to: state, expansion: &expansion, solved: &solved, bends };
-        let moved = (0..self.changes.len()).map(|d| self.moved(d, &passage)).collect();
+        let mut moved = std::mem::take(&mut self.moved);
+        moved.iter_mut().enumerate().for_each(|(d, moved)| self.moved(d, &passage, moved));
         let slide = (ending != Ending::Length).then(|| self.slide(&passage));
         for solved in &solved {
             let (c, followed) = (solved.contact, &mut self.contacts[solved.contact]);
@@ -187,7 +189,8 @@ impl Walk<'_> {
             followed.overlap += self.loads.overlap(c, next.start_s).0 - self.loads.overlap(c, stretch.start_s).0;
             followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
         }
-        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, moved, slide.as_ref());
+        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, &mut moved, slide.as_ref());
+        self.moved = moved;
         if let Some(after) = after {
             self.pass_breaks(after);
         }
@@ -208,7 +211,7 @@ impl Walk<'_> {
     }
 
     /// The end of a panel: its shift, the statistics, and the events there.
-    fn arrive(&mut self, end: &Arrival, solved: &[Solved], moved: Vec<Moved>, slide: Option<&Moved>) {
+    fn arrive(&mut self, end: &Arrival, solved: &[Solved], moved: &mut [Moved], slide: Option<&Moved>) {
         let Arrival { length_s: h, ending, state, end_s, next } = *end;
         let time_s = next.start_s;
         let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
@@ -227,7 +230,7 @@ impl Walk<'_> {
             followed.sizes[1] = followed.sizes[1].max(rate.abs());
         }
         let peaks = self.peaks(solved);
-        for (d, mut moved) in moved.into_iter().enumerate() {
+        for (d, moved) in moved.iter_mut().enumerate() {
             let mut longer = 0.0;
             if let Some(slide) = slide {
                 longer = match ending {
@@ -269,7 +272,8 @@ impl Walk<'_> {
                 }
             }
             let tangent = &mut self.tangents[d];
-            (tangent.amplitude, tangent.rate) = (moved.amplitude, moved.rate);
+            std::mem::swap(&mut tangent.amplitude, &mut moved.amplitude);
+            std::mem::swap(&mut tangent.rate, &mut moved.rate);
             tangent.time_s += longer;
         }
         for (i, (c, event)) in next.events.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Derivatives of the modes and of the forces on one panel, without shifts of events.
 
 use super::expansion::Expansion;
-use super::walk::{LAW_STEP, Walk, shifted, size_of};
+use super::walk::{LAW_STEP, Moved, Walk, shifted, size_of};
 use crate::assembly::dense::Stretch;
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
@@ -48,15 +48,6 @@ pub(super) struct Passage<'a> {
     pub bends: [Vec<f64>; 2],
 }
 
-/// Derivatives with respect to one parameter on one panel.
-pub(super) struct Moved {
-    pub amplitude: Vec<f64>,
-    pub rate: Vec<f64>,
-    /// By the panel's closed contacts: change of force and overlap at the nodes.
-    pub force: Vec<Nodal>,
-    pub overlap: Vec<Nodal>,
-}
-
 /// Derivative of the overlap of a contact by free motion: at the start and at the nodes, and the part multiplied by the time.
 #[derive(Default)]
 pub(super) struct Seen {
@@ -82,7 +73,7 @@ impl Walk<'_> {
             compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
             for (q, (_, other)) in stretch.forces.iter().enumerate() {
                 let nodal = other.nodal();
-                add(&mut compression, 1.0, &apply(&expansion.own[p * n + q], &nodal));
+                add(&mut compression, 1.0, &apply(&expansion.responses[p * n + q], &nodal));
             }
             let rate = slopes(followed.overlap, &compression, h);
             let law = self.posed.laws[*c];
@@ -130,17 +121,20 @@ impl Walk<'_> {
         bend
     }
 
-    /// A panel of unchanged length.
-    pub fn moved(&self, d: usize, passage: &Passage) -> Moved {
+    /// A panel of unchanged length, into memory that is used again.
+    pub fn moved(&self, d: usize, passage: &Passage, into: &mut Moved) {
         let (system, change, tangent) = (self.system, &self.changes[d], &self.tangents[d]);
         let Passage { from, expansion, solved, .. } = passage;
         let (h, n) = (from.length_s, solved.len());
         let (a, b) = (from.amplitude.as_slice(), from.rate.as_slice());
         let modes_move = change.moves_modes;
         let (fade, stretches) = (&change.fade, &change.stretch);
+        let Moved { amplitude, rate, force, overlap } = into;
         // y and y' at the start
-        let mut amplitude = tangent.amplitude.clone();
-        let mut rate = tangent.rate.clone();
+        amplitude.clone_from(&tangent.amplitude);
+        rate.clone_from(&tangent.rate);
+        force.clear();
+        overlap.clear();
         if modes_move {
             vectorized(
                 #[inline(always)]
@@ -152,16 +146,16 @@ impl Walk<'_> {
                 },
             );
         }
-        let (mut force, mut overlap) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for (p, own) in solved.iter().enumerate() {
             let c = own.contact;
             let Seen { start, moved: mut found, timed_start, mut timed } =
-                self.seen(d, c, &expansion.forced, [&amplitude, &rate], [a, b, &passage.bends[0]]);
+                self.seen(d, c, &expansion.forced, [amplitude, rate], [a, b, &passage.bends[0]]);
             let start = start + self.beyond(d, c, from.start_s)[0];
             found.iter_mut().for_each(|value| *value += start);
             timed.iter_mut().for_each(|value| *value += timed_start);
             for (q, other) in solved.iter().enumerate() {
-                let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
+                let places = expansion.changed[(d * n + p) * n + q];
+                let [of_force, of_timed, of_timed_rate] = places.map(|place| place.map(|i| &expansion.responses[i]));
                 if let Some(response) = of_force {
                     add(&mut found, 1.0, &apply(response, &other.nodal));
                 }
@@ -196,21 +190,21 @@ impl Walk<'_> {
             overlap.push(found);
         }
         if n > 0 {
-            self.blocks.solve(&mut force);
+            self.blocks.solve(force);
         }
         for (p, found) in overlap.iter_mut().enumerate() {
             for (q, force) in force.iter().enumerate() {
-                add(found, 1.0, &apply(&expansion.own[p * n + q], force));
+                add(found, 1.0, &apply(&expansion.responses[p * n + q], force));
             }
         }
         // y at the end
-        expansion.rotation.apply(&mut amplitude, &mut rate);
-        for (own, force) in solved.iter().zip(&force) {
+        expansion.rotation.apply(amplitude, rate);
+        for (own, force) in solved.iter().zip(&*force) {
             let c = own.contact;
             let link = &system.links[c];
-            expansion.forced.push(&link.spans, &Legendre::through(force), &mut amplitude, &mut rate);
+            expansion.forced.push(&link.spans, &Legendre::through(force), amplitude, rate);
             for (Span { modes, psi }, Span { psi: by, .. }) in link.spans.iter().zip(&change.psi[c]) {
-                for (order, moved) in [&mut amplitude, &mut rate].into_iter().enumerate() {
+                for (order, moved) in [&mut *amplitude, &mut *rate].into_iter().enumerate() {
                     let driven = own.driven.each_ref().map(|motion| motion[order].get(modes.clone()).unwrap_or(&[]));
                     let moved = &mut moved[modes.clone()];
                     let factors = modes_move.then(|| [&change.fade, &change.stretch].map(|row| &row[modes.clone()]));
@@ -235,7 +229,7 @@ impl Walk<'_> {
                 || {
                     let motion = a.iter().zip(b).zip(bend).zip(fade.iter().zip(stretches));
                     for ((amplitude, rate), (((a, b), bend), (fade, stretch))) in
-                        amplitude.iter_mut().zip(&mut rate).zip(motion)
+                        amplitude.iter_mut().zip(rate.iter_mut()).zip(motion)
                     {
                         let moving = stretch * b - fade * a;
                         *amplitude += h * moving;
@@ -254,7 +248,6 @@ impl Walk<'_> {
             amplitude[k] += by_zeta * by_mode;
             rate[k] += by_zeta * by_mode_rate;
         }
-        Moved { amplitude, rate, force, overlap }
     }
 
     /// Derivative of the overlap of a contact by free motion from `y` and from the state, in one pass over the modes.
@@ -333,7 +326,7 @@ impl Walk<'_> {
         let mut overlap = vec![[0.0; Q]; n];
         for p in 0..n {
             for (q, force) in force.iter().enumerate() {
-                add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q], force));
+                add(&mut overlap[p], 1.0, &apply(&expansion.responses[p * n + q], force));
             }
             let spans = &self.system.links[solved[p].contact].spans;
             expansion.forced.push(spans, &Legendre::through(&force[p]), &mut amplitude, &mut rate);

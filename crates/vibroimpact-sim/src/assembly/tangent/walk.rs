@@ -8,6 +8,7 @@ use crate::assembly::load_change::LoadChange;
 use crate::assembly::no_derivative::NoDerivative;
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
+use crate::panel::legendre::Nodal;
 use contact_models::{Branch, Internal, Memory};
 use std::array;
 
@@ -81,6 +82,16 @@ pub(super) struct Followed {
     pub peaks: [f64; 2],
 }
 
+/// Derivatives with respect to one parameter on one panel.
+#[derive(Default)]
+pub(super) struct Moved {
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// By the panel's closed contacts: change of force and overlap at the nodes.
+    pub force: Vec<Nodal>,
+    pub overlap: Vec<Nodal>,
+}
+
 pub(super) struct Walk<'a> {
     pub posed: &'a Posed<'a>,
     pub system: &'a System,
@@ -95,6 +106,8 @@ pub(super) struct Walk<'a> {
     pub blocks: Blocks,
     pub contacts: Vec<Followed>,
     pub tangents: Vec<Tangent>,
+    /// Memory for each parameter's derivatives on a panel.
+    pub moved: Vec<Moved>,
     /// Intervals begun so far, the slowest touch and the fastest.
     pub begun: usize,
     pub touches: [f64; 2],
@@ -142,6 +155,7 @@ impl<'a> Walk<'a> {
             blocks: Blocks::default(),
             contacts: posed.gaps_m.iter().map(followed).collect(),
             tangents: changes.iter().map(tangent).collect(),
+            moved: changes.iter().map(|_| Moved::default()).collect(),
             begun: 0,
             touches: [f64::INFINITY, 0.0],
         }
