@@ -38,7 +38,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use super::Cost;
 use super::left_out::taken_by_dashpot;
 use super::pose::{Pose, Source, Wall};
-use crate::scene::{BeamTheory, InvalidInput, Waves, compliance};
+use crate::scene::{Beam, BeamTheory, InvalidInput, Waves, compliance};
 
 /// Factor from one number of modes to the next.
 const RAISE: f64 = std::f64::consts::SQRT_2;
@@ -151,10 +151,7 @@ fn expected(pose: &Pose, contact: &Excitation, target: f64) -> Result<usize, Inv
     };
     Ok(match &pose.source {
         Source::Beam { beam, location_m, .. } => match Waves::new(beam, *location_m) {
-            Ok(Some(waves)) => first(&|n| {
-                let (omega_rad_s, inverse_mass) = waves.expected(n);
-                Fast { omega_rad_s, damping_ratio: beam.damping_ratio_at(n, omega_rad_s), inverse_mass }
-            }),
+            Ok(Some(waves)) => first(&|n| mode_of_beam(beam, &waves, n)),
             Ok(None) => FEWEST,
             Err(fault) => return Err(fault.within("structure")),
         },
@@ -164,6 +161,13 @@ fn expected(pose: &Pose, contact: &Excitation, target: f64) -> Result<usize, Inv
         }),
         Source::Listed { .. } => most,
     })
+}
+
+/// Mode `n` of a beam, from one, as it is expected on average.
+fn mode_of_beam(beam: &Beam, waves: &Waves, n: usize) -> Fast {
+    let (omega_rad_s, inverse_mass) = waves.expected(n);
+    // the list of damping ratios counts from zero
+    Fast { omega_rad_s, damping_ratio: beam.damping_ratio_at(n - 1, omega_rad_s), inverse_mass }
 }
 
 /// The number of modes with which the restitution may have converged.
@@ -223,6 +227,32 @@ pub(super) fn fewer(count: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{End, Segment};
+
+    /// The mean density of modes is exact for a uniform pinned beam.
+    #[test]
+    fn an_expected_mode_has_the_frequency_and_the_damping_of_that_mode() {
+        let segment = Segment {
+            length_m: 1.3,
+            flexural_rigidity_n_m2: Some(274.0),
+            mass_per_length_kg_m: Some(1.1),
+            ..Segment::default()
+        };
+        let beam = Beam {
+            segments: vec![segment],
+            theory: Some(BeamTheory::EulerBernoulli),
+            damping_ratio: 0.3,
+            damping_ratios: vec![0.01, 0.02, 0.04, 0.08],
+            ..Beam::new([End::Pinned; 2])
+        };
+        let waves = Waves::new(&beam, 0.4).unwrap().unwrap();
+        let modes = beam.modes(6).unwrap().seen_from(0.4).unwrap();
+        for (k, mode) in modes.iter().enumerate() {
+            let expected = mode_of_beam(&beam, &waves, k + 1);
+            assert!((expected.omega_rad_s / mode.omega_rad_s - 1.0).abs() < 1e-9, "{k}");
+            assert_eq!(expected.damping_ratio, mode.damping_ratio, "{k}");
+        }
+    }
 
     /// 1 times the factor is rounded to 1, and so is 1 over it.
     #[test]
