@@ -82,6 +82,33 @@ impl Information {
         Ok(Information { matrix: &self.matrix + further.matrix })
     }
 
+    /// The information about some of the coordinates if the others are unknown too, `M_aa - M_ab M_bb^-1 M_ba`; `None` if these
+    /// coordinates do not exist, or the others are not determined even if these were known.
+    ///
+    /// ```
+    /// // a reading of the sum of all three coordinates, and one of the third
+    /// let readings = fitting::Information::of(&[1.0, 1.0, 1.0, 0.0, 0.0, 1.0], 3)?;
+    /// let first_two = readings.about(&[0, 1]).unwrap();
+    /// // their sum has a variance of 2, and along the unit vector half of it
+    /// assert!((first_two.directions()[1].standard_deviation - 1.0).abs() < 1e-12);
+    /// # Ok::<(), fitting::InvalidInput>(())
+    /// ```
+    pub fn about(&self, members: &[usize]) -> Option<Information> {
+        let n = self.matrix.nrows();
+        if members.is_empty() || members.iter().any(|member| *member >= n) {
+            return None;
+        }
+        let others: Vec<usize> = (0..n).filter(|j| !members.contains(j)).collect();
+        let part = |rows: &[usize], columns: &[usize]| self.matrix.select_rows(rows).select_columns(columns);
+        let alone = part(members, members);
+        if others.is_empty() {
+            return Some(Information { matrix: alone });
+        }
+        let both = part(&others, members);
+        let known = part(&others, &others).cholesky()?.solve(&both);
+        Some(Information { matrix: alone - both.transpose() * known })
+    }
+
     /// The directions that the observations determine independently, the least certain first.
     pub fn directions(&self) -> Vec<Direction> {
         let eigen = SymmetricEigen::new(self.matrix.clone());

@@ -105,9 +105,21 @@ fn every_key_of_an_identification_is_documented() {
     let command = ["identify", &table, "--scene", &scene, "--free", "structure.damping_ratio", "--starts", "1"];
     let command = [&command[..], &["--candidates", &next]].concat();
     let found = documented(folder.path(), "`identify`", &command, &["direction", "fields"]);
-    assert!(
-        !found["undetermined"].as_array().unwrap().is_empty() && !found["candidates"].as_array().unwrap().is_empty()
-    );
+    let filled = |found: &Value, key: &str| !found[key].as_array().unwrap().is_empty();
+    assert!(filled(&found, "undetermined") && filled(&found, "candidates"));
+    // at a rigid location the contact lasts as long for every stiffness and mass of the same ratio
+    let rigid = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [1000], "shape_at_location": [1e-6] },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 }
+    });
+    fs::write(folder.path().join("rigid.json"), rigid.to_string()).unwrap();
+    let measured = "striker.speed_m_s,first_contact_s,first_contact_s_sd\n1,3e-4,1e-6\n2,2.6e-4,1e-6\n";
+    fs::write(folder.path().join("measured.csv"), measured).unwrap();
+    let free = "contact.stiffness_n_m1_5,striker.mass_kg";
+    let command = ["identify", "measured.csv", "--scene", "rigid.json", "--free", free, "--starts", "1"];
+    let found = documented(folder.path(), "`identify`", &command, &["direction", "fields", "exponents"]);
+    assert!(filled(&found, "combinations"));
 }
 
 #[test]

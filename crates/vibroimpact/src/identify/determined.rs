@@ -1,8 +1,8 @@
-//! Description of the combinations of parameters that the data do not determine.
+//! Description of the combinations of parameters that the data do not determine, and of those that they do.
 
 use fitting::{Direction, Information, Parameter, Range};
 
-use super::summary::Undetermined;
+use super::summary::{Combination, Undetermined};
 use crate::text::significant;
 
 /// Largest standard deviation of the coordinates, mostly logarithms, along a direction that counts as determined.
@@ -11,6 +11,8 @@ const OPEN: f64 = 0.5;
 const ALONE: f64 = 0.95;
 /// Entries of a direction below this value are not mentioned.
 const TOLD: f64 = 0.1;
+/// Exponents below this value are rounding.
+const NO_POWER: f64 = 1e-4;
 /// The relative change of the first parameter in an example.
 const EXAMPLE: f64 = 0.1;
 /// Largest change of a coordinate in an example.
@@ -28,6 +30,50 @@ pub(super) fn undetermined(information: &Information, coordinates: &[Parameter],
         }
     };
     information.directions().into_iter().filter(open).map(told).collect()
+}
+
+/// The products of powers of these parameters that the data determine, although they leave other combinations of them open.
+/// `z` holds the quantiles of the parameters.
+pub(super) fn combinations(
+    information: &Information,
+    coordinates: &[Parameter],
+    values: &[f64],
+    members: &[usize],
+    z: &[f64],
+) -> Vec<Combination> {
+    let known = |direction: &Direction| direction.standard_deviation <= OPEN;
+    let told = |direction: Direction| {
+        let lead = direction.vector.iter().copied().fold(0.0, f64::max);
+        let powers: Vec<(usize, f64)> = members.iter().zip(&direction.vector).map(|(j, v)| (*j, v / lead)).collect();
+        let powers: Vec<(usize, f64)> = powers.into_iter().filter(|(_, power)| power.abs() >= NO_POWER).collect();
+        // other coordinates than logarithms make no product
+        if powers.len() < 2 || powers.iter().any(|(j, _)| coordinates[*j].range != Range::Positive) {
+            return None;
+        }
+        let logarithm: f64 = powers.iter().map(|(j, power)| power * values[*j].ln()).sum();
+        let quantile = powers.iter().map(|(j, _)| z[*j]).fold(0.0, f64::max);
+        let half = quantile * direction.standard_deviation / lead;
+        let named = |(j, power): &(usize, f64)| (coordinates[*j].name.clone(), *power);
+        Some(Combination {
+            product: product(coordinates, &powers),
+            exponents: powers.iter().map(named).collect(),
+            value: logarithm.exp(),
+            interval: [-half, half].map(|by| (logarithm + by).exp()),
+        })
+    };
+    let directions = information.about(members).map_or_else(Vec::new, |found| found.directions());
+    directions.into_iter().filter(known).filter_map(told).collect()
+}
+
+/// A product of powers, the positive ones first.
+fn product(coordinates: &[Parameter], powers: &[(usize, f64)]) -> String {
+    let factor = |(j, power): &(usize, f64)| match significant(power.abs(), 4).as_str() {
+        "1" => coordinates[*j].name.clone(),
+        power => format!("{}^{power}", coordinates[*j].name),
+    };
+    let of_sign = |positive: bool| powers.iter().filter(move |(_, power)| (*power > 0.0) == positive).map(factor);
+    let over: String = of_sign(false).map(|factor| format!(" / {factor}")).collect();
+    of_sign(true).collect::<Vec<_>>().join(" · ") + &over
 }
 
 fn words(direction: &Direction, coordinates: &[Parameter], values: &[f64]) -> String {
@@ -123,6 +169,31 @@ mod tests {
             assert!(one.text.starts_with("The data leave a combination open: "), "{}", one.text);
             assert_eq!(one.text.contains("c from 0"), one.direction.contains_key("c"), "{}", one.text);
         }
+    }
+
+    /// Two readings of the ratio of `a` and `b`, accurate to 1 %, of which one contains an unknown factor `c^2` as well.
+    #[test]
+    fn a_ratio_is_determined_without_the_other_parameters() {
+        let information = Information::of(&[100.0, -100.0, 0.0, 100.0, -100.0, 200.0], 3).unwrap();
+        let coordinates = ["a", "b", "c"].map(positive);
+        let found = combinations(&information, &coordinates, &[6.0, 2.0, 5.0], &[0, 1], &[2.0, 3.0, 9.0]);
+        assert_eq!(found.len(), 1);
+        let one = &found[0];
+        assert!(one.product == "a / b" || one.product == "b / a", "{}", one.product);
+        let ratio = if one.product == "a / b" { 3.0 } else { 1.0 / 3.0 };
+        assert!((one.value / ratio - 1.0).abs() < 1e-9, "{}", one.value);
+        // the first reading alone, by the larger of the two quantiles
+        for (end, sign) in one.interval.into_iter().zip([-1.0, 1.0]) {
+            assert!(((end / one.value).ln() - sign * 3.0 * 0.01).abs() < 1e-9, "{end}");
+        }
+        assert!(combinations(&information, &coordinates, &[6.0, 2.0, 5.0], &[0], &[2.0, 3.0, 9.0]).is_empty());
+    }
+
+    #[test]
+    fn products_are_written_with_their_powers() {
+        let coordinates = ["a", "b", "c"].map(positive);
+        let written = product(&coordinates, &[(0, 1.0), (1, -0.500_001), (2, 0.25)]);
+        assert_eq!(written, "a · c^0.25 / b^0.5");
     }
 
     fn positive(name: &str) -> Parameter {

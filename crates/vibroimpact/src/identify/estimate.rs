@@ -5,7 +5,7 @@ use fitting::{Information, Profile, Start};
 use super::data::Data;
 use super::derivative::Prediction;
 use super::design::{Measured, design};
-use super::determined::undetermined;
+use super::determined::{combinations, undetermined};
 use super::forward::Model;
 use super::free::Free;
 use super::freedom::quantiles;
@@ -13,7 +13,7 @@ use super::gauge::FORCE;
 use super::judge::lack_of_fit;
 use super::quantity::Quantity;
 use super::summary::{Identification, Identified, Noise, Predicted, ProfileCurve, RecordFit, StartFound};
-use super::work::Work;
+use super::work::{FURTHEST, Work};
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene};
 
@@ -133,11 +133,29 @@ impl Work<'_> {
         let fields: Vec<String> = self.coordinates.iter().map(|parameter| parameter.name.clone()).collect();
         let mut residuals = vec![0.0; self.measured.len()];
         self.residuals(&self.parameters, &mut residuals);
+        let open = undetermined(&information, &self.coordinates, &self.parameters);
+        let takes_part = |j: &usize| open.iter().any(|combination| combination.direction.contains_key(&fields[*j]));
+        // along such a combination nothing but the limit of the search makes the sum of squares rise
+        let endless = |j: usize| {
+            let further = |sd: Option<f64>| sd.is_none_or(|sd| sd > FURTHEST);
+            open.iter().any(|one| one.direction.contains_key(&fields[j]) && further(one.standard_deviation))
+        };
+        let members: Vec<usize> = (0..n).filter(takes_part).collect();
         let identified = |j: usize| {
             let (parameter, value) = (&self.coordinates[j], self.parameters[j]);
             let (u, half) = (parameter.inward(value), z[j] * sds[j]);
-            let wald = half.is_finite().then(|| [parameter.outward(u - half), parameter.outward(u + half)]);
-            let ends = [profiles[j].low, profiles[j].high];
+            let ends = match [profiles[j].low, profiles[j].high] {
+                // another parameter has met the limit of the search there
+                [Some(_), None] | [None, Some(_)] if endless(j) => [None; 2],
+                ends => ends,
+            };
+            let determined = match ends.iter().flatten().count() {
+                0 => false,
+                1 => !takes_part(&j),
+                _ => true,
+            };
+            let wald = [parameter.outward(u - half), parameter.outward(u + half)];
+            let wald = Some(wald).filter(|_| determined && half.is_finite());
             let apart = |end: Option<f64>, sign: f64| {
                 end.is_none_or(|end| (parameter.inward(end) - u - sign * half).abs() > BENT * half)
             };
@@ -145,6 +163,7 @@ impl Work<'_> {
                 field: fields[j].clone(),
                 start: parameter.start,
                 value,
+                determined,
                 covariance_interval: wald,
                 profile_interval: ends,
                 bent: wald.is_none() || apart(ends[0], -1.0) || apart(ends[1], 1.0),
@@ -176,7 +195,8 @@ impl Work<'_> {
             parameters: (0..n).map(identified).collect(),
             level: request.level,
             correlation,
-            undetermined: undetermined(&information, &self.coordinates, &self.parameters),
+            combinations: combinations(&information, &self.coordinates, &self.parameters, &members, z),
+            undetermined: open,
             count: self.measured.len(),
             degrees_of_freedom: self.freedom,
             sum_of_squares: self.sum_of_squares,

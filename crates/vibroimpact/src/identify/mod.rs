@@ -44,7 +44,8 @@
 //! A parameter that a single quantity determines has only the degrees of freedom of that quantity.
 //!
 //! Eigenvectors of `M` are the combinations that the data determine independently. Combinations with a large standard deviation
-//! are reported as not determined. `S` follows the chi-square distribution with `m - n` degrees of freedom if the model is right.
+//! are reported as not determined. For the parameters in them, the information `M_aa - M_ab M_bb^-1 M_ba` that remains if the others
+//! are unknown too shows which products of their powers are determined. `S` follows the chi-square distribution with `m - n` degrees of freedom if the model is right.
 //! The value of a further measurement is the amount that it adds to `ln det M` ([`fitting::Information`]).
 //!
 //! | symbol | meaning |
@@ -78,7 +79,7 @@ pub use gauge::ForceRecord;
 pub use picture::picture;
 pub use quantity::Quantity;
 pub use summary::{
-    Candidate, Identification, Identified, LackOfFit, Noise, Predicted, ProfileCurve, RecordFit, StartFound,
-    Undetermined,
+    Candidate, Combination, Identification, Identified, LackOfFit, Noise, Predicted, ProfileCurve, RecordFit,
+    StartFound, Undetermined,
 };
 pub use text::text;

@@ -15,6 +15,8 @@ pub struct Identification {
     pub correlation: Option<Vec<Vec<f64>>>,
     /// Combinations that the data do not determine.
     pub undetermined: Vec<Undetermined>,
+    /// Products of powers of parameters in these combinations that the data do determine.
+    pub combinations: Vec<Combination>,
     /// Number of measured values, including samples of force histories.
     pub count: usize,
     /// That number minus the parameters and the offsets of force histories.
@@ -51,8 +53,11 @@ pub struct Identified {
     pub field: String,
     /// The value in the scene; for the time constant of a gauge, the start of the search.
     pub start: f64,
-    /// The estimate.
+    /// The estimate; where the data do not determine the parameter, the value at which the search stopped.
     pub value: f64,
+    /// Whether the data determine the parameter. They do not if its interval is open on both sides, or on one side while a
+    /// combination that contains the parameter is undetermined.
+    pub determined: bool,
     /// Interval by the covariance; null where the data do not determine the parameter.
     pub covariance_interval: Option<[f64; 2]>,
     /// Interval by the likelihood profile; an end is null if the sum of squares does not rise enough.
@@ -70,6 +75,19 @@ pub struct Undetermined {
     pub standard_deviation: Option<f64>,
     /// The same in words.
     pub text: String,
+}
+
+/// A product of powers of parameters that the data determine.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Combination {
+    /// The product in words.
+    pub product: String,
+    /// The exponent of each parameter, by its field.
+    pub exponents: BTreeMap<String, f64>,
+    /// The estimate of the product, in SI units.
+    pub value: f64,
+    /// Interval by the covariance.
+    pub interval: [f64; 2],
 }
 
 /// Noise of a measured quantity.

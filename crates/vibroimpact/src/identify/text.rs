@@ -31,7 +31,11 @@ pub fn text(found: &Identification) -> String {
     };
     line("field", "value", &format!("{level} % interval"));
     for parameter in &found.parameters {
-        line(&parameter.field, &significant(parameter.value, 5), &interval(parameter));
+        let value = match parameter.determined {
+            true => significant(parameter.value, 5),
+            false => "not determined".to_owned(),
+        };
+        line(&parameter.field, &value, &interval(parameter));
     }
     text.push('\n');
     let mut say = |name: &str, told: &str| {
@@ -41,6 +45,10 @@ pub fn text(found: &Identification) -> String {
     };
     for open in &found.undetermined {
         say("not determined", &open.text);
+    }
+    for known in &found.combinations {
+        let [value, low, high] = [known.value, known.interval[0], known.interval[1]].map(|one| significant(one, 5));
+        say("determined", &format!("{} = {value}, {level} % interval {low} to {high}", known.product));
     }
     for noise in &found.noise {
         let stated = if noise.stated { "stated" } else { "estimated from the misfit" };
@@ -73,10 +81,12 @@ fn interval(parameter: &Identified) -> String {
         (Some(low), Some(high)) => format!("{} to {}", number(low), number(high)),
         (Some(low), None) => format!("above {}", number(low)),
         (None, Some(high)) => format!("below {}", number(high)),
-        (None, None) => "not determined by these data".to_owned(),
+        (None, None) => "open".to_owned(),
     };
-    let open = low.is_none() && high.is_none();
-    match (parameter.bent && !open, parameter.covariance_interval) {
+    if !parameter.determined {
+        return format!("{told}; the search stopped at {}", significant(parameter.value, 2));
+    }
+    match (parameter.bent, parameter.covariance_interval) {
         (true, Some([low, high])) => format!("{told} (profile; covariance {} to {})", number(low), number(high)),
         _ => told,
     }

@@ -22,7 +22,7 @@ const CANDIDATES_PER_START: usize = 64;
 const MOST_MINIMA: usize = 4;
 const SAME_MINIMUM: f64 = 1e-3;
 /// Largest distance of a parameter from its start, in its transformed coordinate: a factor of 20,000.
-const FURTHEST: f64 = 10.0;
+pub(super) const FURTHEST: f64 = 10.0;
 /// Rounds of fit and estimate of the noise, and the relative change at which they agree.
 const MOST_ROUNDS: usize = 12;
 const AGREED: f64 = 1e-3;
