@@ -244,15 +244,85 @@ fn force_histories_determine_the_contact_and_the_gauge() {
     assert!(found["lack_of_fit"].as_array().unwrap().iter().all(|test| test["noticed"] == true), "{found:#}");
 }
 
+/// The history that `simulate` writes is a force history as it is: its columns of displacements and velocities are passed over.
 #[test]
-fn undetermined_combinations_are_reported() {
-    // At a rigid location, contact durations determine only the ratio of stiffness to mass: T ~ (m/k)^(2/5).
+fn the_history_of_simulate_is_a_force_history() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("truth.json"), scene(1.2e9, 0.05).to_string()).unwrap();
+    fs::write(folder.path().join("scene.json"), scene(1.4e9, 0.05).to_string()).unwrap();
+    stdout(&run(folder.path(), &["--quiet", "simulate", "truth.json", "--out", "simulated"]));
+    fs::write(folder.path().join("data.csv"), "location,force_file,force_n_sd\ntip,simulated/history.csv,1\n").unwrap();
+    let options = ["--free", "contact.stiffness_n_m1_5", "--starts", "1"];
+    let found = in_folder(folder.path(), &options);
+    assert!((value(&found, 0) / 1.2e9 - 1.0).abs() < 1e-5, "{found:#}");
+    // The same columns and one more.
+    let history = folder.path().join("simulated/history.csv");
+    let more = |(k, line): (usize, &str)| format!("{line},{}\n", if k == 0 { "temperature_k" } else { "293" });
+    let text: String = fs::read_to_string(&history).unwrap().lines().enumerate().map(more).collect();
+    fs::write(&history, text).unwrap();
+    let output = run(folder.path(), &[&["identify", "data.csv", "--scene", "scene.json"], &options[..]].concat());
+    let message = String::from_utf8(output.stderr).unwrap();
+    let said =
+        "simulated/history.csv, column temperature_k = 1 column is not allowed; it must be left out: a force history";
+    assert!(output.status.code() == Some(2) && message.contains(said), "{message}");
+}
+
+/// Impacts at a rigid location, where contact durations determine only the ratio of stiffness to mass: T ~ (m/k)^(2/5).
+fn at_a_rigid_location() -> (Value, &'static str) {
     let scene = json!({
         "structure": { "kind": "modal", "omega_rad_s": [1000], "shape_at_location": [1e-6] },
         "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
         "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 }
     });
     let table = "striker.speed_m_s,first_contact_s,first_contact_s_sd\n0.5,3.0e-4,1e-6\n1,2.6e-4,1e-6\n2,2.2e-4,1e-6\n";
+    (scene, table)
+}
+
+/// The duration `T = c (m/k)^(2/5) v^(-1/5)` by Hertz, fitted by hand.
+#[test]
+fn a_combination_that_is_determined_has_its_value() {
+    let (scene, table) = at_a_rigid_location();
+    let found = identify(&scene, table, &["--free", FREE]);
+    for parameter in found["parameters"].as_array().unwrap() {
+        assert_eq!(parameter["determined"], false);
+        assert_eq!(parameter["covariance_interval"], Value::Null);
+        assert_eq!(parameter["profile_interval"], json!([null, null]));
+    }
+    let only = &found["combinations"][0];
+    assert_eq!(found["combinations"].as_array().unwrap().len(), 1);
+    let exponent = |field: &str| only["exponents"][field].as_f64().unwrap();
+    let power = exponent("contact.stiffness_n_m1_5");
+    assert!((power.abs() - 1.0).abs() < 1e-5 && (exponent("striker.mass_kg") / power + 1.0).abs() < 1e-5, "{only}");
+    // 2 sqrt(pi) Gamma(7/5)/Gamma(9/10)
+    let c = 2.943_275_1 * 1.25f64.powf(0.4);
+    let slopes = [0.5f64, 1.0, 2.0].map(|speed| c * speed.powf(-0.2));
+    let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+    let a = slopes.iter().zip([3.0e-4, 2.6e-4, 2.2e-4]).map(|(slope, duration)| slope * duration).sum::<f64>() / square;
+    let half = 1.959_964 * 2.5 * 1e-6 / square.sqrt() / a;
+    let ratio = a.powf(-2.5).powf(power.signum());
+    assert!((only["value"].as_f64().unwrap() / ratio - 1.0).abs() < 1e-4, "{only} {ratio}");
+    let [low, high] = [0, 1].map(|k| only["interval"][k].as_f64().unwrap());
+    assert!(((high / low).ln() / (2.0 * half) - 1.0).abs() < 1e-3, "{only} {half}");
+
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    fs::write(folder.path().join("data.csv"), table).unwrap();
+    let text =
+        stdout(&run(folder.path(), &["--quiet", "identify", "data.csv", "--scene", "scene.json", "--free", FREE]));
+    for field in FREE.split(',') {
+        let line = text.lines().find(|line| line.trim_start().starts_with(field)).unwrap();
+        assert!(line.contains("  not determined  open; the search stopped at "), "{text}");
+    }
+    let product = only["product"].as_str().unwrap();
+    assert!(text.contains(&format!("  determined            {product} = ")), "{text}");
+    // A field that the data determine beside those is printed as before.
+    let found = identify(&scene, table, &["--free", "contact.stiffness_n_m1_5"]);
+    assert_eq!((&found["parameters"][0]["determined"], &found["combinations"]), (&json!(true), &json!([])));
+}
+
+#[test]
+fn undetermined_combinations_are_reported() {
+    let (scene, table) = at_a_rigid_location();
     let found = identify(&scene, table, &["--free", "contact.stiffness_n_m1_5,striker.mass_kg"]);
     let open = &found["undetermined"][0];
     assert_eq!(found["undetermined"].as_array().unwrap().len(), 1);
@@ -489,7 +559,32 @@ fn bad_input_is_refused_by_name() {
             "location,force_file\ntip,noise.csv\n",
             stiffness,
             "noise.csv, column force_n_sd = 1 column is not allowed; it must be left out: a force history has the columns \
-             time_s and force_n only, and its noise is stated in the column force_n_sd beside force_file",
+             time_s and force_n, beside which only those of the history.csv of simulate are allowed (time_s, \
+             structure_displacement_m, striker_displacement_m, structure_velocity_m_s, striker_velocity_m_s, compression_m, \
+             force_n); its noise is stated in the column force_n_sd beside force_file",
+        ),
+        (
+            good,
+            "contact.stiffness_n_m1_5=-1..1",
+            "--free contact.stiffness_n_m1_5 = -1.0..1.0 is not allowed; it must be low..high with two values that the field \
+             can have, each a number greater than 0",
+        ),
+        (
+            good,
+            "contact.stiffness_n_m1_5=0..1e10",
+            "--free contact.stiffness_n_m1_5 = 0.0..10000000000.0 is not allowed",
+        ),
+        (
+            good,
+            "contact.stiffness_n_m1_5,striker.mass_kg=-1..1",
+            "--free striker.mass_kg = -1.0..1.0 is not allowed; it must be low..high with two values that the field can have, \
+             each a finite number greater than 0",
+        ),
+        (
+            good,
+            "structure.damping_ratios[1]=0..2e6",
+            "--free structure.damping_ratios[1] = 0.0..2000000.0 is not allowed; it must be low..high with two values that the \
+             field can have, each 0 up to 1e6",
         ),
     ] {
         let folder = tempfile::tempdir().unwrap();
@@ -513,6 +608,30 @@ fn bad_input_is_refused_by_name() {
             "{message}"
         );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before);
+    }
+}
+
+/// The limits of a search are judged by the scene: those of other laws and structures, and not the interval of a search without
+/// stated limits, which may reach further.
+#[test]
+fn limits_of_a_search_are_those_that_the_scene_allows() {
+    let folder = repository().join("datasets");
+    let found = |free: &str| {
+        let arguments = ["--quiet", "identify", "identification/rubber-ball.csv", "--scene", "scenes/rubber-ball.json"];
+        run(&folder, &[&arguments[..], &["--starts", "1", "--free", free]].concat())
+    };
+    for (free, said) in [
+        ("contact.restitution=0.5..1.5", "--free contact.restitution = 0.5..1.5 is not allowed; it must be low..high"),
+        ("contact.striker_youngs_modulus_pa=-1e6..1e7", "values that the field can have, each a number greater than 0"),
+        ("structure.damping_ratio=-0.1..0.1", "--free structure.damping_ratio = -0.1..0.1 is not allowed"),
+        ("structure.segments[0].length_m=0..2", "--free structure.segments[0].length_m = 0.0..2.0 is not allowed"),
+    ] {
+        let output = found(free);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty() && message.contains(said), "{message}");
+    }
+    for free in ["contact.restitution=0.5..1", "structure.damping_ratio=0..0.1"] {
+        assert!(stdout(&found(free)).contains("chi-square"), "{free}");
     }
 }
 

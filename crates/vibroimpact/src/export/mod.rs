@@ -53,22 +53,26 @@ impl Table {
     }
 }
 
+/// A column of a history: its name, and what it holds.
+type Column = (&'static str, fn(&Sample) -> f64);
+
+/// The columns of `history.csv`.
+pub(crate) const HISTORY: [Column; 7] = [
+    ("time_s", |sample| sample.time_s),
+    ("structure_displacement_m", |sample| sample.structure_displacement_m),
+    ("striker_displacement_m", |sample| sample.striker_displacement_m),
+    ("structure_velocity_m_s", |sample| sample.structure_velocity_m_s),
+    ("striker_velocity_m_s", |sample| sample.striker_velocity_m_s),
+    ("compression_m", |sample| sample.compression_m),
+    ("force_n", |sample| sample.force_n),
+];
+
 /// Motion and force over time until `until_s`: the table `history.csv`.
 pub fn history<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     let times = history.times(until_s, HISTORY_INTERVALS);
     let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
-    let column = |name: &str, of: fn(&Sample) -> f64| (name.to_owned(), samples.iter().map(of).collect());
-    Table {
-        columns: vec![
-            column("time_s", |sample| sample.time_s),
-            column("structure_displacement_m", |sample| sample.structure_displacement_m),
-            column("striker_displacement_m", |sample| sample.striker_displacement_m),
-            column("structure_velocity_m_s", |sample| sample.structure_velocity_m_s),
-            column("striker_velocity_m_s", |sample| sample.striker_velocity_m_s),
-            column("compression_m", |sample| sample.compression_m),
-            column("force_n", |sample| sample.force_n),
-        ],
-    }
+    let column = |(name, of): Column| (name.to_owned(), samples.iter().map(of).collect());
+    Table { columns: HISTORY.map(column).into() }
 }
 
 /// The energy of each mode over time until `until_s`: the table `modal_energies.csv`.

@@ -17,7 +17,7 @@ use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::model::{Kept, chooses_modes};
 use crate::scene::FieldPath;
-use crate::scene::json::quote;
+use crate::scene::json::{number, quote};
 use crate::scene::told::did_you_mean_one_of;
 use crate::scene::{InvalidInput, Scene};
 
@@ -59,6 +59,7 @@ impl<'a> Model<'a> {
         let threads = thread::available_parallelism().map_or(1, NonZero::get).min(data.rows.len());
         let kept = (0..threads).map(|_| Mutex::default()).collect();
         let mut model = Model { data, free, tree: tree.clone(), modes: None, kept };
+        model.require_limits(start)?;
         let mut kept = Kept::default();
         let mut most = None;
         let stride = data.rows.len().div_ceil(PROBES);
@@ -99,6 +100,28 @@ impl<'a> Model<'a> {
             model.kept.truncate(1);
         }
         Ok(model)
+    }
+
+    /// Checks that free fields may have the stated limits of their search, in the scene of the first row.
+    fn require_limits(&self, start: &[f64]) -> Result<(), InvalidInput> {
+        let Some(row) = self.data.rows.first() else { return Ok(()) };
+        for (j, free) in self.free.iter().enumerate().filter(|(_, free)| !free.is_of_gauge()) {
+            let (Some((low, high)), Some(path)) = (free.search, FieldPath::parse(&free.field)) else { continue };
+            for limit in [low, high] {
+                let mut parameters = start.to_vec();
+                parameters[j] = limit;
+                let checked = self.scene(row, &parameters).and_then(|scene| scene.check());
+                // an error in another field may come from the row, or from both fields; the search avoids such values
+                if let Err(fault) = checked
+                    && fault.field.steps().ends_with(path.path().steps())
+                {
+                    let name = format!("--free {}", free.field);
+                    let allowed = format!("low..high with two values that the field can have, each {}", fault.allowed);
+                    return Err(InvalidInput::new(name, format!("{}..{}", number(low), number(high)), allowed));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Checks that every row is an impact on the structure.

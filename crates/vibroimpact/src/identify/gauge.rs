@@ -5,6 +5,7 @@ use fitting::chi_square_tail;
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::History;
 
+use crate::export::HISTORY;
 use crate::input::{Row, Table};
 use crate::scene::json::number;
 
@@ -54,10 +55,12 @@ impl ForceRecord {
         let read = || -> Result<ForceRecord, InvalidInput> {
             let table = Table::parse(bytes, NEEDED)?;
             // a column that is passed over, such as one of standard deviations, would be taken for one that counts
-            if let Some(other) = table.header.iter().find(|name| !["time_s", FORCE].contains(name)) {
+            if let Some(other) = table.header.iter().find(|name| HISTORY.iter().all(|(known, _)| known != name)) {
+                let known = HISTORY.map(|(name, _)| name).join(", ");
                 let allowed = format!(
-                    "left out: a force history has the columns time_s and {FORCE} only, and its noise is stated in the \
-                     column {FORCE}{SD} beside {FORCE_FILE} in the table of measurements"
+                    "left out: a force history has the columns time_s and {FORCE}, beside which only those of the \
+                     history.csv of simulate are allowed ({known}); its noise is stated in the column {FORCE}{SD} beside \
+                     {FORCE_FILE} in the table of measurements"
                 );
                 return Err(InvalidInput::new(format!("column {other}"), "1 column", allowed));
             }
