@@ -3,10 +3,10 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{GOLDEN, ball, hertz, pinned, settings};
+use common::{GOLDEN, ball, hertz, near_pinned, pinned, settings, ten_parameters};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use vibroimpact_sim::modal::{Parameter, Posing, Settings, Solver, Start};
+use vibroimpact_sim::modal::{Settings, Solver, Start};
 
 /// Tolerances that give errors of 1e-6 and 1e-9 in the restitution at N = 40, and their names.
 const ACCURACIES: [(f64, &str); 2] = [(5e-7, "1e-6"), (7e-10, "1e-9")];
@@ -32,18 +32,11 @@ fn impacts(criterion: &mut Criterion) {
 
 /// Ten parameters, each of which changes frequencies, dampings or shapes, compared with the impact with its uncertainty.
 fn derivatives(criterion: &mut Criterion) {
-    let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
     for modes in [5, 40, 200] {
         let structure = pinned(modes, 0.02, GOLDEN);
         let (law, striker, start) = (hertz(), ball(), Start::at_rest(modes));
-        let by_damping = offsets.map(|by| pinned(modes, 0.02 + by, GOLDEN));
-        let by_place = offsets.map(|by| pinned(modes, 0.02, GOLDEN + by));
-        let mut parameters = Vec::new();
-        for near in [&by_damping, &by_place].into_iter().cycle().take(10) {
-            let neighbours =
-                near.each_ref().map(|structure| Posing { structure, striker: &striker, law: &law, start: &start });
-            parameters.push(Parameter { offsets, neighbours, changes_law: false });
-        }
+        let near = near_pinned(modes);
+        let parameters = ten_parameters(&near, &striker, &law, &start);
         let settings = Settings::default();
         criterion.bench_function(&format!("impact/N={modes}/with its uncertainty, anew"), |bencher| {
             bencher.iter(|| {

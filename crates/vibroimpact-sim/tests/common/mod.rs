@@ -7,7 +7,7 @@ use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory, boundaries};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
-use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Parameter, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
 /// Collects the intervals of all contacts, each with the number of its contact, and requests the energy ledger.
 #[derive(Default)]
@@ -39,6 +39,29 @@ pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
         }
     };
     Structure { modes: (1..=n).map(mode).collect() }
+}
+
+/// Differences of four neighbouring values of a parameter from the value.
+pub const OFFSETS: [f64; 4] = [-2e-5, -1e-5, 1e-5, 2e-5];
+
+/// That beam at neighbouring values of its damping, and at neighbouring places.
+pub fn near_pinned(n: usize) -> [[Structure; 4]; 2] {
+    [OFFSETS.map(|by| pinned(n, 0.02 + by, GOLDEN)), OFFSETS.map(|by| pinned(n, 0.02, GOLDEN + by))]
+}
+
+/// Ten parameters that change these structures in turn.
+pub fn ten_parameters<'a>(
+    near: &'a [[Structure; 4]; 2],
+    striker: &'a Striker,
+    law: &'a Law,
+    start: &'a Start,
+) -> Vec<Parameter<'a>> {
+    let of = |near: &'a [Structure; 4]| Parameter {
+        offsets: OFFSETS,
+        neighbours: near.each_ref().map(|structure| Posing { structure, striker, law, start }),
+        changes_law: false,
+    };
+    near.iter().cycle().take(10).map(of).collect()
 }
 
 /// The same with two remainder modes for all higher modes.
