@@ -1,6 +1,6 @@
 //! Laws other than Hertz's, and user-defined impulse responses, on structures without ends, compared with independent methods.
 
-use crate::common;
+use crate::common::{self, Bounded};
 
 use contact_models::{
     After, Boundary, Branch, ContactLaw, Felt, Force, Hertz, HuntCrossley, Hysteretic, Internal, KelvinVoigt, Law,
@@ -27,29 +27,8 @@ fn run(receptance: &Receptance, law: &dyn ContactLaw) -> Solution {
 
 /// Hertz's law with an event of the rate that never happens. The solver then solves the equation of the rate as well, and the past
 /// acts through impulses where it has closed forms for the compression alone.
-struct Rated(Hertz);
-
-impl ContactLaw for Rated {
-    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
-        self.0.touch(memory, approach_speed_m_s)
-    }
-
-    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
-        self.0.force(branch, compression_m, rate_m_s)
-    }
-
-    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
-        self.0.stored_energy_j(branch, compression_m)
-    }
-
-    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
-        let never = (which == 1).then(|| Boundary::rate_falls_to(-1e3));
-        if which == 0 { self.0.boundary(branch, 0) } else { never }
-    }
-
-    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
-        self.0.cross(branch, which, compression_m, rate_m_s)
-    }
+fn rated(stiffness_n_m1_5: f64) -> Bounded {
+    Bounded { hertz: Hertz::new(stiffness_n_m1_5).unwrap(), further: vec![Boundary::rate_falls_to(-1e3)] }
 }
 
 /// Near the critical S the striker comes to rest after its first contact but for 2.8e-6 of its speed, and 434 contacts follow,
@@ -58,7 +37,7 @@ impl ContactLaw for Rated {
 fn slow_contacts_keep_their_digits() {
     let once = Settings { estimate_uncertainty: false, ..Settings::default() };
     let exact = solve(Structure::Beam, 1.5606, &once).unwrap();
-    let found = solve_law(&power(0.5), &UNIT, &Rated(Hertz::new(1.5606_f64.sqrt()).unwrap()), &once).unwrap();
+    let found = solve_law(&power(0.5), &UNIT, &rated(1.5606_f64.sqrt()), &once).unwrap();
     assert_eq!((exact.separations(), found.separations()), (434, 434));
     for (a, b) in found.sub_impacts.iter().zip(&exact.sub_impacts) {
         // the speed left after the first contact has lost six digits to both
@@ -76,7 +55,7 @@ fn the_rate_is_that_of_the_compression() {
     let plates = [1.0, 1e3].map(|s: f64| (Structure::Plate, s));
     for (structure, s) in beams.into_iter().chain(plates) {
         let receptance = power(if structure == Structure::Beam { 0.5 } else { 0.0 });
-        let found = run(&receptance, &Rated(Hertz::new(s.sqrt()).unwrap()));
+        let found = run(&receptance, &rated(s.sqrt()));
         let exact = solve(structure, s, &Settings::default()).unwrap();
         assert_eq!((found.s, found.sub_impacts.len()), (None, exact.sub_impacts.len()), "{structure:?} {s}");
         let near =

@@ -1,6 +1,6 @@
 //! User-defined laws: those that keep their contract work like any other, and one that breaks it ends the run with that reason.
 
-use crate::common::{ball, pinned, second_method, settings};
+use crate::common::{Bounded, ball, pinned, second_method, settings};
 use contact_models::{
     After, Boundary, Branch, ContactLaw, Force, Hertz, Internal, Memory, Stage, boundaries, check_contract,
 };
@@ -46,40 +46,13 @@ fn a_law_that_breaks_its_contract_ends_with_that_reason() {
     }
 }
 
-/// Hertz's law with boundaries that are never reached before its own.
-struct Crowded(Hertz);
-
-impl ContactLaw for Crowded {
-    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
-        self.0.touch(memory, approach_speed_m_s)
-    }
-
-    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
-        self.0.force(branch, compression_m, rate_m_s)
-    }
-
-    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
-        self.0.stored_energy_j(branch, compression_m)
-    }
-
-    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
-        match which {
-            0 => Some(Boundary::compression_rises_to(1.0)),
-            1..5 => Some(Boundary::compression_falls_to(-(which as f64))),
-            _ => self.0.boundary(branch, which - 5),
-        }
-    }
-
-    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
-        self.0.cross(branch, which.saturating_sub(5), compression_m, rate_m_s)
-    }
-}
-
 #[test]
 fn a_law_has_any_number_of_boundaries() {
     let hertz = Hertz::new(1.7945e10).unwrap();
     let solver = Solver::new(&pinned(10, 0.02, 0.3)).unwrap();
-    let law = Crowded(hertz);
+    let falls = (1..5).map(|level| Boundary::compression_falls_to(-f64::from(level)));
+    let further = [Boundary::compression_rises_to(1.0)].into_iter().chain(falls).collect();
+    let law = Bounded { hertz, further };
     assert_eq!(boundaries(&law, &law.touch(&Memory::default(), 1.0)).count(), 6);
     let crowded = solver.solve(&ball(), &law, None, &settings(1e-9)).unwrap();
     let plain = solver.solve(&ball(), &hertz, None, &settings(1e-9)).unwrap();

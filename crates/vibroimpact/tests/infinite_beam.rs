@@ -288,8 +288,7 @@ fn usage_errors_exit_with_2_as_well() {
     }
 }
 
-/// A structure that is nearly rigid returns the ball as a wall does, also where its number `S` lies below that of the least
-/// flexible structure in the thesis's sense.
+/// A nearly rigid structure returns the ball as a wall does, also where the number `S` lies below its range.
 #[test]
 fn a_nearly_rigid_structure_is_a_wall() {
     let mut altered = scene();

@@ -96,6 +96,8 @@ struct Trial {
     /// Empty unless the contact follows the rate.
     rate_series: Vec<f64>,
     f_series: Vec<f64>,
+    /// The scale of impulses after it.
+    impulse_scale: f64,
     /// Impulse that the polynomial of the force does not resolve, relative to the allowed one.
     unresolved: f64,
 }
@@ -290,7 +292,12 @@ impl<'a> Contact<'a> {
                 return Ending::Ended(outcome);
             }
             if self.panels >= MOST_PANELS {
-                self.move_origin(false);
+                let behind = |panel: &Solved| if panel.kind == Kind::Start { 1.5 } else { 0.5 } * panel.h;
+                let present = self.since;
+                self.move_origin(|panel| present - panel.end >= behind(panel));
+                self.past.condense();
+                let reach = REACH * self.natural_times.contact;
+                self.free = FreeMotion::during_contact(self.kernel, &self.past, reach);
             }
         }
         stopped(StopReason::Steps)
@@ -373,16 +380,10 @@ impl<'a> Contact<'a> {
         self.trials += 1;
         let tables = self.kernel.tables;
         self.pose(kind, h);
-        let rest = 1e-6 * self.settings.tolerance;
-        let from_hint = self.hint.take().map(|hint| self.guess_from(&hint, kind, h));
-        let plain = self.guess(kind, h);
-        let mut solve = |mut nodal: Nodal| {
-            self.equations.solve(self.law, &self.branch, rest, &mut nodal)?;
-            Ok(nodal)
-        };
-        let nodal = match from_hint.map(&mut solve) {
+        let hinted = self.hint.take().map(|hint| self.guess_from(&hint, kind, h));
+        let nodal = match hinted.map(|guess| self.solve(guess)) {
             Some(Ok(nodal)) => nodal,
-            _ => solve(plain)?,
+            _ => self.solve(self.guess(kind, h))?,
         };
         let x_series = tables.coefficients(&nodal.x[..tables.p]);
         let rate_series = if self.follows_rate { tables.coefficients(&nodal.rate[..tables.p]) } else { Vec::new() };
@@ -391,8 +392,15 @@ impl<'a> Contact<'a> {
         let f_series = tables.coefficients(&nodal.force);
         let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
         let noise = 1e-15 * self.terms(h)[0] * nodal.stiffness * h;
-        let allowed = (self.settings.tolerance * self.scale_after(h, &nodal.force)).max(noise).max(f64::MIN_POSITIVE);
-        Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, unresolved: tail * h / allowed })
+        let impulse_scale = self.scale_after(h, &nodal.force);
+        let allowed = (self.settings.tolerance * impulse_scale).max(noise).max(f64::MIN_POSITIVE);
+        Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, impulse_scale, unresolved: tail * h / allowed })
+    }
+
+    /// Solves the equations that are set, from a guess.
+    fn solve(&mut self, mut nodal: Nodal) -> Result<Nodal, Fault> {
+        self.equations.solve(self.law, &self.branch, 1e-6 * self.settings.tolerance, &mut nodal)?;
+        Ok(nodal)
     }
 
     /// The scale of impulses after a panel with these forces.
@@ -457,7 +465,7 @@ impl<'a> Contact<'a> {
     /// Adds a panel to the record.
     fn take(&mut self, trial: Trial) {
         let (x_end, rate_end) = trial.end();
-        let Trial { kind, h, mut nodal, x_series, f_series, .. } = trial;
+        let Trial { kind, h, mut nodal, x_series, f_series, impulse_scale, .. } = trial;
         let tables = self.kernel.tables;
         nodal.x.truncate(tables.p);
         let (found, falling) = turns(tables, kind, &x_series, self.falling);
@@ -469,7 +477,7 @@ impl<'a> Contact<'a> {
         if f_series.iter().map(|c| c.abs()).sum::<f64>() > self.peak_force {
             self.peak_force = self.peak_force.max(largest(&tables.sample, &f_series));
         }
-        self.impulse_scale = self.scale_after(h, &nodal.force);
+        self.impulse_scale = impulse_scale;
         let Passed { impulse, moment } = self.passed_since_touch;
         let (mass, lever) = self.kernel.totals(kind);
         let panel = Passed { impulse: h * dot(mass, &nodal.force), moment: h * h * dot(lever, &nodal.force) };
@@ -485,14 +493,13 @@ impl<'a> Contact<'a> {
         self.record.push(Panel { kind, start, h, x: nodal.x, force: nodal.force, impulse, moment });
     }
 
-    /// Moves the origin of time to the present. Panels that lie far enough back become impulses; at release all of them.
-    fn move_origin(&mut self, released: bool) {
+    /// Moves the origin of time to the present. The oldest panels become impulses, as long as they lie far enough back. The free
+    /// motion after all impulses remains to be computed.
+    fn move_origin(&mut self, is_far: impl Fn(&Solved) -> bool) {
         let p = self.since;
         self.slope += self.free.bend_and_gain(p).1 - self.passed.impulse;
         self.past.advance(p);
-        let far =
-            |panel: &Solved| released || p - panel.end >= if panel.kind == Kind::Start { 1.5 } else { 0.5 } * panel.h;
-        let count = self.near.iter().take_while(|panel| far(panel)).count();
+        let count = self.near.iter().take_while(|panel| is_far(panel)).count();
         let moved: Vec<Solved> = self.near.drain(..count).collect();
         if let (Some(oldest), Some(youngest)) = (moved.first(), moved.last()) {
             let mut impulses = Vec::new();
@@ -505,9 +512,6 @@ impl<'a> Contact<'a> {
             self.slope -= impulses.iter().map(share).sum::<f64>();
             self.past.push(impulses, p - youngest.end, p - oldest.end + oldest.h);
         }
-        if !released {
-            self.past.condense();
-        }
         self.origin += p;
         self.near.iter_mut().for_each(|panel| panel.end -= p);
         self.hint.iter_mut().for_each(|hint| hint.start -= p);
@@ -517,10 +521,6 @@ impl<'a> Contact<'a> {
             panel.add_after_effect(self.kernel, -panel.end, &[0.0], &mut at_origin, &mut []);
         }
         [self.near_at_origin] = at_origin;
-        if !released {
-            let reach = REACH * self.natural_times.contact;
-            self.free = FreeMotion::during_contact(self.kernel, &self.past, reach);
-        }
     }
 
     /// The first minimum of the compression.
@@ -541,7 +541,7 @@ impl<'a> Contact<'a> {
 
     /// The flight that follows release, and the past as seen from there.
     pub fn departure(mut self) -> (Departure, History) {
-        self.move_origin(true);
+        self.move_origin(|_| true);
         let free = FreeMotion::new(self.kernel, &self.past);
         // Where the structure's speed follows from the past alone, the sum of both speeds has the digits that one minus all impulses
         // loses as the striker slows down.

@@ -67,6 +67,12 @@ pub(super) struct Problem<'a> {
     hertz: Option<(Structure, f64)>,
 }
 
+impl Problem<'_> {
+    fn kernel(&self, settings: &Settings) -> Kernel {
+        Kernel::new(self.receptance, &self.law.scale, settings.nodes)
+    }
+}
+
 /// The impact whose mass, speed and impulse response are 1, and whose Hertz stiffness is `sqrt(S)`.
 fn with_hertz<R>(structure: Structure, s: f64, then: impl FnOnce(&Problem<'_>) -> R) -> Result<R, InvalidInput> {
     InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
@@ -96,7 +102,7 @@ fn finer(settings: &Settings) -> Settings {
 /// Solves once, without error estimate.
 fn run(problem: &Problem<'_>, settings: &Settings) -> Solution {
     let Scale { displacement_m, .. } = problem.law.scale;
-    let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+    let kernel = problem.kernel(settings);
     let (structure, s) = problem.hertz.unzip();
     let mut solution = Solution::empty(structure, s, settings.nodes);
     let (mut past, mut touch, mut body_travel) = (History::default(), Touch::first(), 0.0);
@@ -156,7 +162,7 @@ fn run(problem: &Problem<'_>, settings: &Settings) -> Solution {
 /// contact. `None` if there are fewer than `n` contacts, or the limit was reached.
 pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> {
     let following = |problem: &Problem<'_>| {
-        let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+        let kernel = problem.kernel(settings);
         let (mut past, mut touch) = (History::default(), Touch::first());
         for _ in 1..n {
             let mut contact = Contact::new(&kernel, problem.law, settings, touch, past);
@@ -187,7 +193,7 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
 /// Speed of the body towards the beam after the first contact; `None` if it does not end.
 pub(super) fn speed_after_first(s: f64, settings: &Settings) -> Option<f64> {
     let following = |problem: &Problem<'_>| {
-        let kernel = Kernel::new(problem.receptance, &problem.law.scale, settings.nodes);
+        let kernel = problem.kernel(settings);
         let mut contact = Contact::new(&kernel, problem.law, settings, Touch::first(), History::default());
         let ending = contact.run(Extent::new(problem.hertz, 0.0), settings.max_panels);
         matches!(ending, Ending::Released(_)).then(|| contact.departure().0.body)

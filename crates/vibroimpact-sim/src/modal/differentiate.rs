@@ -253,10 +253,11 @@ impl Solver {
             let tangent = tangent?;
             let by_mass = striker.as_ref().map_or(0.0, |side| around.weight[d] * end[side.modes.start]);
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let velocities = [velocity(end), velocity(&tangent.rate) + by_mass].map(|speed| speed * unit.0);
+            let velocities = [velocity(end), velocity(&tangent.rate) + by_mass];
             let motions = [&ended, &rate].map(|motion| motion.iter().map(|rate| rate * unit.0).collect::<Vec<f64>>());
-            let restitution = restitution_change(self.modes(), impact, &around.parameters[d], velocities, &motions);
-            let numbers = [restitution, tangent.time_s, velocities[1] / unit.0];
+            let in_seconds = velocities.map(|speed| speed * unit.0);
+            let restitution = restitution_change(self.modes(), impact, &around.parameters[d], in_seconds, &motions);
+            let numbers = [restitution, tangent.time_s, velocities[1]];
             Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate }.in_seconds(unit))
         };
         Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches.map(|speed| speed * unit.0)))

@@ -4,7 +4,7 @@
 pub mod random;
 
 use beam_modes::{Beam, End, RectangularSegment, Segment};
-use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory, boundaries};
+use contact_models::{After, Boundary, Branch, ContactLaw, Force, Hertz, Law, Memory, boundaries};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
 use vibroimpact_sim::modal::{Mode, Parameter, Posing, Settings, Solution, Solver, Start, Striker, Structure};
@@ -20,6 +20,37 @@ impl Observer for Intervals {
 
     fn wants_energy(&self) -> bool {
         true
+    }
+}
+
+/// Hertz's law with further boundaries before its own, which must never be reached.
+pub struct Bounded {
+    pub hertz: Hertz,
+    pub further: Vec<Boundary>,
+}
+
+impl ContactLaw for Bounded {
+    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
+        self.hertz.touch(memory, approach_speed_m_s)
+    }
+
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+        self.hertz.force(branch, compression_m, rate_m_s)
+    }
+
+    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
+        self.hertz.stored_energy_j(branch, compression_m)
+    }
+
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        match which.checked_sub(self.further.len()) {
+            Some(own) => self.hertz.boundary(branch, own),
+            None => Some(self.further[which]),
+        }
+    }
+
+    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
+        self.hertz.cross(branch, which.saturating_sub(self.further.len()), compression_m, rate_m_s)
     }
 }
 

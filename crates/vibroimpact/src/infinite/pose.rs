@@ -22,8 +22,8 @@ pub struct Posed {
 }
 
 impl Posed {
-    /// Solves the impact, by its number `S` if it is Hertz contact; the scale holds the units of the solution. A structure that is
-    /// so nearly rigid that `S` lies below its range is one for which any law can be solved.
+    /// Solves the impact, by its number `S` if it is Hertz contact; the scale holds the units of the solution. On a structure so
+    /// rigid that `S` lies below its range, Hertz contact is solved as any other law is.
     ///
     /// # Errors
     /// Numbers that are out of the range of the solver.
