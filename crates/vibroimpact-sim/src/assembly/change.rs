@@ -7,7 +7,7 @@
 use super::load_change::LoadChange;
 use super::problem::Posed;
 use super::stencil::Stencil;
-use super::system::{Link, Span, System};
+use super::system::{Span, System, joined};
 use contact_models::ContactLaw;
 
 /// Limit of `|1 - zeta^2|`. Closer to critical damping `c_1` and `c_2` would magnify the panels' error of the force times the time.
@@ -85,8 +85,8 @@ impl<'a> Change<'a> {
             change.rate.iter_mut().zip(&rate).for_each(|(change, steady)| *change -= steady);
         }
         for (c, link) in system.links.iter().enumerate() {
-            let links = posed.map(|posed| system.link(posed.sides[c]));
-            change.psi.push(difference(link, &links, &stencil));
+            let spans = posed.map(|posed| joined(&system.sides(posed.sides[c])));
+            change.psi.push(difference(&link.spans, &spans, &stencil));
         }
         change.moves_modes = change.fade.iter().chain(&change.stretch).any(|value| *value != 0.0);
         change
@@ -134,10 +134,10 @@ impl<'a> Change<'a> {
     }
 }
 
-fn difference(link: &Link, neighbours: &[Link; 4], stencil: &Stencil<4>) -> Vec<Span> {
+fn difference(spans: &[Span], neighbours: &[Vec<Span>; 4], stencil: &Stencil<4>) -> Vec<Span> {
     let of = |(i, span): (usize, &Span)| {
-        let psi = |k| stencil.slope(neighbours.each_ref().map(|link| link.spans[i].psi[k]));
+        let psi = |k| stencil.slope(neighbours.each_ref().map(|spans| spans[i].psi[k]));
         Span { modes: span.modes.clone(), psi: (0..span.psi.len()).map(psi).collect() }
     };
-    link.spans.iter().enumerate().map(of).collect()
+    spans.iter().enumerate().map(of).collect()
 }

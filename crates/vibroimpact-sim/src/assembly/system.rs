@@ -161,21 +161,17 @@ impl System {
         Span { modes, psi }
     }
 
-    pub fn link(&self, sides: &[Point; 2]) -> Link {
-        let sides = sides.each_ref().map(|point| match point {
+    /// The weights of the modes in the motion of each side of a contact.
+    pub fn sides(&self, points: &[Point; 2]) -> [Option<Span>; 2] {
+        points.each_ref().map(|point| match point {
             Point::Ground => None,
             Point::OfBody { body, shape } => Some(self.span(*body, shape)),
-        });
-        let mut spans: Vec<Span> = Vec::new();
-        for (side, sign) in sides.iter().zip([-1.0, 1.0]) {
-            let Some(side) = side else { continue };
-            if let Some(same) = spans.iter_mut().find(|span| span.modes == side.modes) {
-                same.psi.iter_mut().zip(&side.psi).for_each(|(psi, value)| *psi += sign * value);
-            } else {
-                let psi = side.psi.iter().map(|value| sign * value).collect();
-                spans.push(Span { modes: side.modes.clone(), psi });
-            }
-        }
+        })
+    }
+
+    fn link(&self, points: &[Point; 2]) -> Link {
+        let sides = self.sides(points);
+        let spans = joined(&sides);
         let weights = spans.iter().flat_map(|span| span.modes.clone().zip(span.psi.iter().copied()));
         let moving = weights.filter(|(_, psi)| *psi != 0.0);
         let (rigid, mut elastic): (Vec<_>, Vec<_>) = moving.partition(|(k, _)| self.modes[*k].is_rigid());
@@ -193,4 +189,19 @@ impl System {
         let of = |modes: &[(usize, f64)]| modes.iter().map(|(_, psi)| psi * psi).sum::<f64>();
         if link.rigid.is_empty() { of(&link.elastic) } else { of(&link.rigid) }
     }
+}
+
+/// The weights of the modes in the overlap of a contact with these sides.
+pub(crate) fn joined(sides: &[Option<Span>; 2]) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::with_capacity(2);
+    for (side, sign) in sides.iter().zip([-1.0, 1.0]) {
+        let Some(side) = side else { continue };
+        if let Some(same) = spans.iter_mut().find(|span| span.modes == side.modes) {
+            same.psi.iter_mut().zip(&side.psi).for_each(|(psi, value)| *psi += sign * value);
+        } else {
+            let psi = side.psi.iter().map(|value| sign * value).collect();
+            spans.push(Span { modes: side.modes.clone(), psi });
+        }
+    }
+    spans
 }

@@ -34,12 +34,13 @@ pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start
         amplitude: pick(&start.amplitude),
         rate: pick(&start.rate),
     };
-    let mut bodies = vec![structure];
-    let mut side = Point::Ground;
-    if let Some(mass_kg) = mass_kg(striker, modes) {
-        bodies.push(Body::mass(mass_kg, 0.0, -striker.speed_m_s));
-        side = Point::OfBody { body: STRIKER, shape: vec![mass_kg.sqrt().recip()] };
-    }
+    let (bodies, side) = match mass_kg(striker, modes) {
+        Some(mass_kg) => {
+            let side = Point::OfBody { body: STRIKER, shape: vec![mass_kg.sqrt().recip()] };
+            (vec![structure, Body::mass(mass_kg, 0.0, -striker.speed_m_s)], side)
+        }
+        None => (vec![structure], Point::Ground),
+    };
     let sides = [side, Point::OfBody { body: STRUCTURE, shape }];
     let contacts = vec![Contact { sides, gap_m: start.gap_m + deflection, law: () }];
     Assembly { bodies, contacts, loads: Vec::new() }

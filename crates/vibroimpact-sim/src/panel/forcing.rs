@@ -172,10 +172,13 @@ impl Compliance {
                         }
                     }
                 }
-                for n in 0..Q {
-                    for j in 0..Q {
-                        for i in 0..Q {
-                            compliance[j][i] += legendre[n][i] * basis.to_coefficients[j][n];
+                // zero if all modes are slow
+                if legendre != [[0.0; Q]; Q] {
+                    for n in 0..Q {
+                        for j in 0..Q {
+                            for i in 0..Q {
+                                compliance[j][i] += legendre[n][i] * basis.to_coefficients[j][n];
+                            }
                         }
                     }
                 }
