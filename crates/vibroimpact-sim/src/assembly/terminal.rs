@@ -13,7 +13,7 @@ use crate::panel::vector::{LANES, vectorized};
 use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
-pub(crate) const REACH: f64 = 2.8;
+pub(crate) const REACH: f64 = 0.7;
 
 type Series = [f64; TAYLOR];
 

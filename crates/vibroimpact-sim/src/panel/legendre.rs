@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 /// Powers of time in a Taylor series over a terminal step.
-pub(crate) const TAYLOR: usize = 24;
+pub(crate) const TAYLOR: usize = 14;
 /// Powers of time in a Taylor series over a dyadic step, and about its middle: enough for [`SLOW`] rad.
 pub(crate) const SERIES: usize = 42;
 pub(crate) const HALF_SERIES: usize = 30;
