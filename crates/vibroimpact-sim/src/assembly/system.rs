@@ -191,7 +191,7 @@ impl System {
     }
 }
 
-/// The weights of the modes in the overlap of a contact with these sides.
+/// The weights of the modes in the overlap of a contact: those of its second side less those of its first.
 pub(crate) fn joined(sides: &[Option<Span>; 2]) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::with_capacity(2);
     for (side, sign) in sides.iter().zip([-1.0, 1.0]) {
