@@ -3,7 +3,7 @@
 use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring, Viscous};
 use gauss_quad::GaussLegendre;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Ledger, Load, Motion, Observer, Point, Run, Settings, run,
 };
@@ -187,11 +187,13 @@ impl Observer for Quadrature<'_> {
 
     fn panel(&mut self, panel: &dyn Motion) {
         let (start, length) = (panel.start_s(), panel.end_s() - panel.start_s());
-        let parts = (self.fastest_rad_s * length).ceil().max(1.0);
+        let parts = (FRAC_PI_2 * self.fastest_rad_s * length).ceil().max(1.0);
         for part in 0..parts as usize {
             for (x, w) in self.rule.iter() {
-                let time = start + length * (part as f64 + 0.5 + 0.5 * x) / parts;
-                let weight = 0.5 * w * length / parts;
+                // a force that begins or ends as `t^(3/2)` is a smooth function of this angle
+                let angle = FRAC_PI_2 * (part as f64 + 0.5 + 0.5 * x) / parts;
+                let time = start + length * angle.sin().powi(2);
+                let weight = 0.5 * w * length / parts * FRAC_PI_2 * (2.0 * angle).sin();
                 let (_, rate) = panel.modes(time);
                 let mut rates = rate.iter();
                 for (i, body) in self.assembly.bodies.iter().enumerate() {
@@ -221,7 +223,7 @@ fn every_part_agrees_with_fine_quadrature_of_the_motion() {
         let measure = |damping_ratio: f64| {
             let mut seen = Quadrature {
                 assembly: &assembly,
-                rule: GaussLegendre::new(8.try_into().unwrap()),
+                rule: GaussLegendre::new(12.try_into().unwrap()),
                 damping_ratio,
                 fastest_rad_s,
                 damping_j: 0.0,

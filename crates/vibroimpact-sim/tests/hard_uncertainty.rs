@@ -122,12 +122,12 @@ fn ordinary_impacts() {
         EdgeImpact { structure, striker, law, start: None }
     };
     let impacts: Vec<EdgeImpact> = draw(ordinary_impact(), 150).into_iter().map(as_edge).collect();
-    modal_restitution("ordinary", &impacts, 125.0);
+    modal_restitution("ordinary", &impacts, 250.0);
 }
 
 #[test]
 fn impacts_from_the_edges() {
-    modal_restitution("edges", &draw(edge_impact(), 100), 125.0);
+    modal_restitution("edges", &draw(edge_impact(), 100), 250.0);
 }
 
 /// A ball on a beam whose restitution changes by less than 2e-13 if its tolerance is a little coarser, since all of its contacts

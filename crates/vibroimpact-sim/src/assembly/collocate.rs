@@ -1,14 +1,15 @@
 //! Collocation of the contact forces on one panel: the only unknowns of the motion.
 //!
-//! On a panel the force of each closed contact is a polynomial. At each of its nodes the law must hold,
-//! `F = law(xi, xi')` with `xi_c = xi_c,free + sum_c' R_cc' F_c'`, `R` the exact responses. Newton's matrix
-//! `1 - F_xi R - F_rate D R` has a block for each pair of contacts, which is zero if they share no body. The iteration ends
+//! On a panel the force of each closed contact acts as a polynomial, which has the values `T F` at its nodes: `T` is one, but where the
+//! force begins or ends as `t^(3/2)` (`panel/ends.rs`). At each node the law must hold, `F = law(xi, xi')` with
+//! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses. Newton's matrix `1 - F_xi R T - F_rate D R T` has a block for each pair of contacts, which is zero if they share no body. The iteration ends
 //! when the remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
 //!
 //! The rate `D xi` is computed only if a boundary of the branch or the force depends on it. The force does not depend on the
 //! rate if the law returns a force whose derivative with respect to the rate is zero at all nodes.
 
 use super::solution::Counts;
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
@@ -36,12 +37,17 @@ pub(crate) struct Unknown<'a> {
     pub accuracy: f64,
     /// A first guess of the force at the nodes (N).
     pub guess: Nodal,
+    /// How the force begins and ends on the panel.
+    pub ends: Ends,
 }
 
 /// Force (N), compression (m) and its rate (m/s; zero unless needed) at the nodes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Collocated {
     pub force: Nodal,
+    pub ends: Ends,
+    /// Nodal values of the polynomial that moves the modes.
+    pub acting: Nodal,
     pub compression: Nodal,
     pub rate: Nodal,
     /// Whether the force may depend on the rate: not if the law has returned a force without derivative with respect to the rate.
@@ -85,6 +91,8 @@ impl Newton {
         let n = unknowns.len();
         let start = |unknown: &Unknown| Collocated {
             force: unknown.guess,
+            ends: unknown.ends,
+            acting: unknown.ends.acting(&unknown.guess),
             compression: [0.0; Q],
             rate: [0.0; Q],
             force_by_rate: unknown.force_by_rate,
@@ -101,7 +109,7 @@ impl Newton {
                 let mut moved = unknown.free;
                 for other in 0..n {
                     if let Some(response) = response(c, other) {
-                        let forced = apply(response, &found[other].force);
+                        let forced = apply(response, &found[other].acting);
                         for i in 0..Q {
                             moved[i] += forced[i];
                         }
@@ -125,7 +133,7 @@ impl Newton {
                 }
             }
             if !factored {
-                blocks.factor_stiff(values, response, h);
+                blocks.factor_stiff(values, unknowns, response, h);
                 factored = true;
             }
             blocks.solve_here(change);
@@ -138,6 +146,7 @@ impl Newton {
                     largest = largest.max(change[c][i].abs());
                     size = size.max(found[c].force[i].abs());
                 }
+                found[c].acting = unknown.ends.acting(&found[c].force);
                 // a sum propagates NaN, maxima do not
                 if !found[c].force.iter().sum::<f64>().is_finite() {
                     return false;
@@ -174,12 +183,13 @@ impl Blocks {
     pub fn factor<'r>(
         &mut self,
         values: &[[Force; Q]],
+        ends: impl Fn(usize) -> Ends,
         response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
         h: f64,
     ) {
         vectorized(
             #[inline(always)]
-            || self.factor_rows(values, response, h, |_| true),
+            || self.factor_rows(values, ends, response, h, |_| true),
         );
     }
 
@@ -197,6 +207,7 @@ impl Blocks {
     fn factor_stiff<'r>(
         &mut self,
         values: &[[Force; Q]],
+        unknowns: &[Unknown],
         response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
         h: f64,
     ) {
@@ -206,13 +217,14 @@ impl Blocks {
             let moved = |own: &Matrix| own.iter().flatten().fold(0.0f64, |most, moved| most.max(moved.abs()));
             values.len() == 1 || by_rate || response(p, p).is_some_and(|own| stiffness * moved(own) > SOFT)
         };
-        self.factor_rows(values, response, h, stiff);
+        self.factor_rows(values, |c| unknowns[c].ends, response, h, stiff);
     }
 
     #[inline(always)]
     fn factor_rows<'r>(
         &mut self,
         values: &[[Force; Q]],
+        ends: impl Fn(usize) -> Ends,
         response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
         h: f64,
         wanted: impl Fn(usize) -> bool,
@@ -226,7 +238,11 @@ impl Blocks {
         for p in (0..n).filter(|p| wanted(*p)) {
             for q in 0..n {
                 if let Some(response) = response(p, q) {
-                    fill(&mut blocks[p * n + q], &values[p], response, h, p == q);
+                    let (block, values) = (&mut blocks[p * n + q], &values[p]);
+                    match ends(q) {
+                        Ends::SMOOTH => fill(block, values, response, h, p == q),
+                        ends => fill(block, values, &ends.response(response), h, p == q),
+                    }
                     present[p * n + q] = true;
                 }
             }
@@ -378,6 +394,7 @@ mod tests {
             force_by_rate: true,
             accuracy: 1e-15,
             guess: [0.0; Q],
+            ends: Ends::SMOOTH,
         };
         let unknowns: Vec<_> = (0..3).map(unknown).collect();
         let (mut newton, mut found) = (Newton::default(), Vec::new());

@@ -3,6 +3,7 @@
 use super::load::Loads;
 use super::solution::{ContactSample, Motion};
 use super::system::System;
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{Legendre, Nodal};
 use crate::panel::oscillator::{propagate, response};
 use contact_models::{Branch, ContactLaw};
@@ -36,7 +37,15 @@ pub(crate) struct Stretch {
     pub rate: Vec<f64>,
     pub contacts: Vec<Seen>,
     /// The forces of the closed contacts.
-    pub forces: Vec<(usize, Legendre)>,
+    pub forces: Vec<Acting>,
+}
+
+/// The force of a closed contact on a stretch: the polynomial that moves the modes, and how the force begins and ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Acting {
+    pub contact: usize,
+    pub force: Legendre,
+    pub ends: Ends,
 }
 
 /// A stretch with the data that its evaluation needs.
@@ -55,10 +64,10 @@ impl Panel<'_> {
         for (k, mode) in self.system.modes.iter().enumerate() {
             (amplitude[k], rate[k]) = propagate(mode, h).apply(amplitude[k], rate[k]);
         }
-        for (c, force) in stretch.forces.iter().filter(|_| h > 0.0) {
+        for Acting { contact, force, .. } in stretch.forces.iter().filter(|_| h > 0.0) {
             // the force as a polynomial on the part alone
             let Legendre(force) = &force.restricted(h / stretch.length_s);
-            for span in &self.system.links[*c].spans {
+            for span in &self.system.links[*contact].spans {
                 for (k, psi) in span.modes.clone().zip(&span.psi).filter(|(_, psi)| **psi != 0.0) {
                     let (moved, pushed) = match self.system.modes[k].is_rigid() {
                         // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on

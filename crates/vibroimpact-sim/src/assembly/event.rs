@@ -173,8 +173,7 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
         return Some(from + half);
     }
     if b.windows(2).all(|pair| pair[0] > pair[1]) && b[Q] < level {
-        let place = (from + length * falls_to(b, level)).min(from + length - 0.5 * FINEST);
-        return Some(((place / FINEST).floor() + 0.5) * FINEST);
+        return Some((from + length * falls_to(b, level)).min(from + length - 0.5 * FINEST));
     }
     let (mut left, mut right) = ([0.0; POINTS], *b);
     for i in 0..POINTS {

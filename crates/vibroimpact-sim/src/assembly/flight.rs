@@ -68,14 +68,14 @@ impl<'a> March<'a> {
 
     pub(super) fn rotate(&mut self, level: i32) {
         self.flown = step_s(level);
-        self.show(step_s(level), &[], &[]);
+        self.show(step_s(level), &[], &[], &[]);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         self.pass(step_s(level));
     }
 
     /// Free motion of any length within the reach of the series; with `whole`, to the next break or the end.
     fn coast(&mut self, length: f64, whole: bool) {
-        self.show(length, &[], &[]);
+        self.show(length, &[], &[], &[]);
         terminal::coast(self.system, length, &mut self.amplitude, &mut self.rate);
         self.pass(length);
         if whole {

@@ -142,7 +142,7 @@ impl<'a> March<'a> {
         let of = |(other, solved): (&usize, &Collocated)| {
             // no product of weights is larger
             let weight = (links[c].mobility * links[*other].mobility).sqrt();
-            weight * TAIL * Legendre::through(&solved.force).truncation()
+            weight * TAIL * Legendre::through(&solved.acting).truncation()
         };
         let shares = |(other, _): &(&usize, &Collocated)| self.system.neighbours[c].contains(other);
         closed.iter().zip(solved).filter(shares).map(of).sum()

@@ -1,28 +1,33 @@
 //! Terminal panels, whose length is unknown. They end at an event, a break of the loads or the end of the run.
 
-use super::collocate::Unknown;
+use super::collocate::{Collocated, Unknown};
 use super::judge::Judgement;
 use super::motion::{Horizon, March, Target};
-use super::terminal::{self, Landed, Window};
+use super::terminal::{Landed, Window};
 use super::transition::SINGULAR;
+use super::trial::{NEWTON_SHARE, Trial};
 use crate::panel::dyadic::level_within;
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Q};
 
-/// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
+/// The error of a terminal panel grows with this power of its length at least, in general and where a force ends as
+/// `(t - end)^(3/2)` and is represented so.
 const LANDING: f64 = 2.5;
+const LANDING_WEIGHTED: f64 = 5.0;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
 const CARRIED: f64 = 0.05;
 
 /// Length of a terminal panel with the allowed error, if the error with this length is too large by this factor.
-fn shorter(length: f64, excess: f64) -> f64 {
-    0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3)
+fn shorter(length: f64, excess: f64, ends: Ends) -> f64 {
+    let power = if ends.ends { LANDING_WEIGHTED } else { LANDING };
+    0.9 * length * excess.powf(-1.0 / power).max(1e-3)
 }
 
 impl<'a> March<'a> {
     /// Advances to the next break of the loads or the end, `length` away.
     pub(super) fn land_at(&mut self, length: f64) {
         let mut window = self.window(None, length);
-        let mut unknowns = self.unknowns_of(&window, length);
+        let mut unknowns = self.unknowns_of(&window, length, |c| self.begins(c));
         let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
@@ -32,6 +37,31 @@ impl<'a> March<'a> {
             _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
             _ => self.commit_landed(&window, &landed),
         }
+    }
+
+    /// The end of a contact that the compression would reach if its polynomial on the panel of `h` just accepted were continued, by at
+    /// most one panel, and no farther than a terminal panel reaches.
+    pub(super) fn look_ahead(&self, h: f64, trial: &Trial) -> Option<Horizon> {
+        let reach = (self.reach / h).min(1.0);
+        let of = |(i, &contact): (usize, &usize)| {
+            let state = &self.states[contact];
+            if state.rate >= 0.0 {
+                return None;
+            }
+            let boundary = state.vanishes.iter().position(|vanishes| *vanishes)?;
+            let end = &state.ends[boundary];
+            let compression = Legendre::through(&trial.solved[i].compression);
+            let places = std::array::from_fn(|k| reach * (k + 1) as f64 / Q as f64);
+            let margins = compression.at_each(&places.map(|place| 1.0 + place)).map(|at| end.margin(at, 0.0));
+            let after = margins.iter().position(|margin| *margin <= 0.0)?;
+            let (from, before) = match after.checked_sub(1) {
+                Some(last) => (places[last], margins[last]),
+                None => (0.0, end.margin(state.overlap, 0.0)),
+            };
+            let place = from + (places[after] - from) * before / (before - margins[after]);
+            Some(Horizon { target: Target { contact, boundary }, at_s: self.time_s + place * h })
+        };
+        trial.contacts[..trial.closed].iter().enumerate().find_map(of)
     }
 
     /// Longest terminal panel that accuracy allows before an event of the compression that is expected after `left`, from the law
@@ -53,8 +83,9 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, moved / left).force_n
         });
         self.counts.law_evaluations += Q as u64;
-        let excess = Legendre::through(&force).truncation() * left / tolerance;
-        if excess > 1.0 { shorter(left, excess) } else { f64::INFINITY }
+        let ends = self.ends(target);
+        let excess = ends.largest() * ends.quotient(&force).truncation() * left / tolerance;
+        if excess > 1.0 { shorter(left, excess, ends) } else { f64::INFINITY }
     }
 
     /// Advances to the event, which is expected after `expected` seconds and at most `longest` away.
@@ -81,7 +112,7 @@ impl<'a> March<'a> {
         }
         let excess = self.excess(&window, &landed);
         if excess > 1.0 {
-            self.landing = shorter(length, excess);
+            self.landing = shorter(length, excess, self.ends(target));
             self.horizon = Some(Horizon { target, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }
@@ -94,7 +125,10 @@ impl<'a> March<'a> {
         let state = &self.states[target.contact];
         let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
-        let mut unknowns = self.unknowns_of(window, length);
+        // other forces are truncated or extrapolated, as polynomials
+        let ends = self.ends(target);
+        let of = |c: usize| if c == target.contact { ends } else { Ends::SMOOTH };
+        let mut unknowns = self.unknowns_of(window, length, of);
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high: Option<(f64, f64)> = None;
         let mut side = 0;
@@ -125,12 +159,19 @@ impl<'a> March<'a> {
             }
             let next = match high {
                 None if length >= longest => return None,
-                None => (2.0 * length).min(longest),
+                None => {
+                    // the guess was good if the event is near
+                    let newton = length - margin / slope;
+                    let near = newton > length && newton <= (1.0 + CARRIED) * length;
+                    if near { newton } else { 2.0 * length }.min(longest)
+                }
                 Some((high, high_margin)) => {
                     let newton = length - margin / slope;
                     let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
                     let within = |x: &f64| *x > low && *x < high;
-                    match [newton, secant, 0.5 * (low + high)].into_iter().find(within) {
+                    // while forces are stretched with the panel, the rate at its end is not the slope of the margin
+                    let guesses = if ends.ends && low > 0.0 { [secant, newton] } else { [newton, secant] };
+                    match guesses.into_iter().chain([0.5 * (low + high)]).find(within) {
                         // the motion after the event does not depend on these last digits of the time
                         Some(next) if (next - length).abs() > 1e-13 * high => next,
                         _ => return Some(landed),
@@ -142,19 +183,27 @@ impl<'a> March<'a> {
         None
     }
 
-    /// The forces of a terminal panel, truncated or extrapolated to the point where the motion under them meets the event, if that
-    /// point is so close that the laws hold there as they do at the nodes.
+    /// The forces of a terminal panel, truncated, extrapolated or stretched to the point where the motion under them meets the event,
+    /// if that point is so close that the laws hold there as they do at the nodes.
     fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
         let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
         let (mut length, mut end) = (from.length, from.end[at]);
+        // a force that is stretched by a part changes by that part
+        let stretched = from.solved.get(at).filter(|solved| solved.ends.ends);
+        let stretched = stretched.map(|solved| solved.force.iter().fold(0.0f64, |most, force| most.max(force.abs())));
+        let defect = NEWTON_SHARE * self.impulse_tolerance(target.contact);
+        let near = if stretched.is_some() { 1e-13 } else { 1e-7 };
         for _ in 0..8 {
             let (margin, slope) = self.margin(target, end);
             let next = length - margin / slope;
             if !range.contains(&next) {
                 return None;
             }
-            // the next of Newton's steps would be the square of this one
-            if (next - length).abs() <= 1e-7 * next {
+            if stretched.is_some_and(|force| force * (next - from.length).abs() > defect) {
+                return None;
+            }
+            // the next of Newton's steps would be the square of this one, unless forces are stretched
+            if (next - length).abs() <= near * next {
                 return Some(window.carried(from, next));
             }
             (length, end) = (next, window.end(from, at, next));
@@ -192,8 +241,14 @@ impl<'a> March<'a> {
     }
 
     /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried.
-    fn unknowns_of(&self, window: &Window, length: f64) -> Vec<Unknown<'a>> {
-        self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect()
+    fn unknowns_of(&self, window: &Window, length: f64, ends: impl Fn(usize) -> Ends) -> Vec<Unknown<'a>> {
+        self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q], ends).collect()
+    }
+
+    /// How the force of the contact of an event begins and ends on a terminal panel up to it.
+    pub(super) fn ends(&self, Target { contact, boundary }: Target) -> Ends {
+        let ends = self.states[contact].is_closed() && self.states[contact].vanishes.get(boundary) == Some(&true);
+        if ends { Ends { ends, ..self.begins(contact) } } else { Ends::SMOOTH }
     }
 
     fn head_for(&mut self, target: Target, place: f64, length: f64) {
@@ -207,15 +262,17 @@ impl<'a> March<'a> {
 
     /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
-        let of = |((c, force), end): ((&usize, &Legendre), &[f64; 3])| {
-            self.error(*c, force.truncation(), landed.length, (end[0], end[1]))
+        let of = |((c, solved), end): ((&usize, &Collocated), &[f64; 3])| {
+            let Collocated { force, ends, .. } = solved;
+            let truncation = ends.largest() * ends.quotient(force).truncation();
+            self.error(*c, truncation, landed.length, (end[0], end[1]))
         };
-        window.contacts.iter().zip(&landed.force).zip(&landed.end).map(of).fold(0.0, f64::max)
+        window.contacts.iter().zip(&landed.solved).zip(&landed.end).map(of).fold(0.0, f64::max)
     }
 
     fn commit_landed(&mut self, window: &Window, landed: &Landed) {
         let (contacts, closed) = (window.contacts.as_slice(), window.closed);
-        self.show(landed.length, &contacts[..closed], &landed.force);
+        self.show(landed.length, &contacts[..closed], &landed.force, &landed.solved);
         if self.wants_contact_work() {
             for (i, &c) in contacts[..closed].iter().enumerate() {
                 let start = self.states[c].overlap;
@@ -223,11 +280,7 @@ impl<'a> March<'a> {
                 self.add_contact_work(&landed.force[i], &moved, landed.end[i][0] - start);
             }
         }
-        terminal::coast(self.system, landed.length, &mut self.amplitude, &mut self.rate);
-        for (i, &c) in contacts[..closed].iter().enumerate() {
-            let (link, nodal) = (&self.system.links[c], &landed.solved[i].force);
-            terminal::push(self.system, link, landed.length, nodal, &mut self.amplitude, &mut self.rate);
-        }
+        window.advance(self.system, landed, &mut self.amplitude, &mut self.rate);
         self.pass(landed.length);
         self.book(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
             (landed.end[i][0], landed.end[i][1])

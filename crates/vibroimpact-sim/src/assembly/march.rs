@@ -12,6 +12,7 @@ use super::motion::{GROWTH, Horizon, March};
 use super::rest;
 use super::solution::{Outcome, Reason};
 use super::state::State;
+use super::terminal::SHORT;
 use super::trial::Trial;
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use contact_models::{ContactLaw, LARGEST, check_contract};
@@ -103,7 +104,9 @@ impl<'a> March<'a> {
         let lasting = self.lasting();
         // a terminal panel is not better than a panel of similar length
         let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
-        let mut reach = self.reach.min(self.landing).min(usual);
+        // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
+        let weighted = self.horizon.is_some_and(|horizon| self.ends(horizon.target).ends);
+        let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
         let mut level = self.level;
         if let Some(Horizon { target, at_s }) = self.horizon {
             let left = (at_s - self.time_s).max(0.0);
@@ -149,8 +152,10 @@ impl<'a> March<'a> {
         let mut error = 0.0f64;
         for (i, &c) in contacts[..closed].iter().enumerate() {
             // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
-            let missed = (self.force_at(c, trial.end[i]) - trial.force[i].at(1.0)).abs();
-            error = error.max(self.error(c, trial.force[i].truncation().max(missed), h, trial.end[i]));
+            let solved = &trial.solved[i];
+            let quotient = if solved.ends.is_smooth() { trial.force[i] } else { solved.ends.quotient(&solved.force) };
+            let missed = (self.force_at(c, trial.end[i]) - quotient.at(1.0)).abs();
+            error = error.max(self.error(c, quotient.truncation().max(missed), h, trial.end[i]));
         }
         if error.is_nan() || error > 1.0 {
             // the error decreases at least like h^5, except on the first panels of a contact, which are short enough from the start
@@ -162,6 +167,9 @@ impl<'a> March<'a> {
             return self.transition(target);
         }
         self.commit(level, trial);
+        if self.horizon.is_none() {
+            self.horizon = self.look_ahead(h, trial);
+        }
         if level == self.level && error * GROWTH < 1.0 {
             self.level = (level - 1).max(J_MIN);
         }

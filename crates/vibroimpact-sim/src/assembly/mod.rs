@@ -29,7 +29,7 @@
 //! Time integration (`march.rs`) computes a panel and checks it. The panel is accepted, tried again with a shorter length, or
 //! ended at an event. Three rules hold for every accepted panel:
 //!
-//! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a tenth of the tolerance
+//! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a quarter of the tolerance
 //!    in impulse;
 //! 2. no event function falls to zero on it. An event function is the distance to a boundary of a law's branch, or of
 //!    the separation of an open contact. It is represented by a polynomial with an error bound (`enclosure.rs`), and only

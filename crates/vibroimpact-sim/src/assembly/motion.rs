@@ -12,7 +12,7 @@ use super::solution::{Counts, Observer, Reason};
 use super::state::{Phase, State};
 use super::system::{Span, System};
 use super::tables::Tables;
-use super::terminal::REACH;
+use super::terminal::reach_s;
 use crate::panel::dyadic::J_MIN;
 use crate::panel::vector::{sum_over, vectorized};
 use contact_models::{ContactLaw, Memory};
@@ -24,7 +24,7 @@ pub(super) const GROWTH: f64 = 250.0;
 pub(super) const MAGNIFIED: f64 = 50.0;
 
 /// Share of the stated tolerance that is allowed for one panel.
-const STEP_SHARE: f64 = 0.1;
+const STEP_SHARE: f64 = 0.25;
 
 /// An event function of a contact: a boundary of its branch, or its closing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,6 +113,7 @@ impl<'a> March<'a> {
         let state = |gap: f64| State {
             phase: Phase::Open { memory: Memory::default(), clear_until: 0.0, bounds: None },
             ends: Vec::new(),
+            vanishes: Vec::new(),
             overlap: 0.0,
             rate: 0.0,
             reference: -gap,
@@ -147,7 +148,7 @@ impl<'a> March<'a> {
             level: J_MIN,
             horizon: None,
             landing: f64::INFINITY,
-            reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
+            reach: reach_s(fastest),
             ask_rest_at: 0,
             try_laws_at: 0,
             flown: 0.0,

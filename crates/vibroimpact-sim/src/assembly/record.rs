@@ -1,6 +1,7 @@
 //! Records of a run: the energy balance, the panels for the observer, and all stretches of motion.
 
-use super::dense::{Panel, Seen, Stretch};
+use super::collocate::Collocated;
+use super::dense::{Acting, Panel, Seen, Stretch};
 use super::ledger::Moment;
 use super::miss::Distance;
 use super::motion::March;
@@ -9,7 +10,7 @@ use crate::panel::legendre::Legendre;
 
 impl<'a> March<'a> {
     /// Adds a panel that is about to be accepted to the energy balance, and shows it to the observer.
-    pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Legendre]) {
+    pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Legendre], solved: &[Collocated]) {
         if let Some(account) = &mut self.account {
             let (amplitude, rate) = (&self.amplitude, &self.rate);
             let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
@@ -31,7 +32,7 @@ impl<'a> March<'a> {
         if !streams && (flies_on || !records) {
             return;
         }
-        let mut stretch = self.stretch(h, contacts, force);
+        let mut stretch = self.stretch(h, contacts, force, solved);
         if streams {
             let (system, loads, laws) = (self.system, &self.loads, self.laws);
             self.observer.panel(&Panel { system, loads, laws, stretch: &stretch });
@@ -65,7 +66,8 @@ impl<'a> March<'a> {
         Some(Distance { is_closed: true, distance_m, approach_m_s: -state.rate })
     }
 
-    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Legendre]) -> Stretch {
+    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Legendre], solved: &[Collocated]) -> Stretch {
+        let forces = contacts.iter().zip(force).zip(solved);
         let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
         Stretch {
             events: Vec::new(),
@@ -74,14 +76,14 @@ impl<'a> March<'a> {
             amplitude: self.amplitude.clone(),
             rate: self.rate.clone(),
             contacts: self.states.iter().map(seen).collect(),
-            forces: contacts.iter().copied().zip(force.iter().copied()).collect(),
+            forces: forces.map(|((&contact, &force), solved)| Acting { contact, force, ends: solved.ends }).collect(),
         }
     }
 
     /// The end of the record, as a stretch of zero length.
     pub(super) fn last(&mut self) -> Stretch {
         let events = std::mem::take(&mut self.pending);
-        Stretch { events, ..self.stretch(0.0, &[], &[]) }
+        Stretch { events, ..self.stretch(0.0, &[], &[], &[]) }
     }
 
     /// The record, with the endless flight that follows if the bodies have separated for good or never meet.
@@ -91,7 +93,7 @@ impl<'a> March<'a> {
             let known = record.partition_point(|stretch| stretch.start_s < self.time_s);
             let flight = record.drain(known..).next();
             let events = flight.map_or_else(|| std::mem::take(&mut self.pending), |flight| flight.events);
-            record.push(Stretch { events, ..self.stretch(f64::INFINITY, &[], &[]) });
+            record.push(Stretch { events, ..self.stretch(f64::INFINITY, &[], &[], &[]) });
         }
         record
     }

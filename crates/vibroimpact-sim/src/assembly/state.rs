@@ -3,6 +3,7 @@
 use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, dot, work_of_unit_forces};
 use crate::panel::peak::Peak;
 use contact_models::{Boundary, Branch, Memory};
@@ -13,6 +14,8 @@ pub(crate) struct State {
     pub phase: Phase,
     /// Boundaries of the branch of a closed contact, which do not change along it.
     pub ends: Vec<Boundary>,
+    /// Whether the force falls to zero at each of these as `t^(3/2)`.
+    pub vanishes: Vec<bool>,
     /// Overlap of the surfaces (m) and its rate (m/s). In a closed contact it is the sum of its increments: a difference of
     /// positions would contain their rounding, which a stiff contact would turn into force.
     pub overlap: f64,
@@ -51,6 +54,8 @@ pub(crate) struct Touch {
     pub residue: f64,
     /// The corresponding error of the rate (m/s), if that function depends on it.
     pub rate_residue: f64,
+    /// Whether the force begins here and now as `t^(3/2)`.
+    pub begins: bool,
     /// The last panel's force, and its length.
     pub previous: Option<(Legendre, f64)>,
     /// The present interval, with the largest force until statistics began.
@@ -88,6 +93,13 @@ impl State {
         }
     }
 
+    pub fn touch_mut(&mut self) -> Option<&mut Touch> {
+        match &mut self.phase {
+            Phase::Closed(touch) => Some(touch),
+            Phase::Open { .. } => None,
+        }
+    }
+
     /// Overlap at which an open contact touches (m).
     pub fn touch_m(&self) -> f64 {
         match &self.phase {
@@ -100,12 +112,13 @@ impl State {
     /// compression and rate at the nodes, and its compression at the end.
     pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, end: f64) {
         let Phase::Closed(touch) = &mut self.phase else { return };
-        let Collocated { force: nodal, compression, force_by_rate, .. } = solved;
+        let Collocated { force: nodal, ends, compression, force_by_rate, .. } = solved;
         touch.force_by_rate = *force_by_rate;
+        touch.begins = false;
         touch.previous = Some((force, h));
         touch.interval.impulse_n_s += h * force.mean();
-        touch.peak_force.note(nodal);
-        touch.peak_compression.note(compression);
+        touch.peak_force.note(nodal, *ends);
+        touch.peak_compression.note(compression, Ends::SMOOTH);
         let statistics = &mut self.statistics;
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * force.mean();

@@ -8,7 +8,9 @@ use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
 use crate::panel::forcing::{ByParts, Compliance, Way, by_quadrature, by_series};
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, work_of_unit_forces};
+use crate::panel::legendre::{
+    BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, leave_out_infinite, work_of_unit_forces,
+};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
@@ -214,11 +216,13 @@ impl Tables {
             let mut kernel = [0.0; TAYLOR];
             for (k, weight) in one.shared(other_link).filter(|(k, _)| !system.modes[*k].is_rigid()) {
                 let (mut here, mut next) = (0.0, weight);
+                // beyond the range of numbers, series do without these powers
                 for value in &mut kernel {
                     *value += here;
                     (here, next) = (next, -system.drag[k] * next - system.square[k] * here);
                 }
             }
+            leave_out_infinite(&mut kernel);
             kernel
         });
         kernel[1] += one.shared_rigid(other_link);

@@ -8,14 +8,24 @@ use super::load::Loads;
 use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot, leave_out_infinite};
 use crate::panel::vector::{LANES, vectorized};
-use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
-pub(crate) const REACH: f64 = 0.7;
+pub(crate) const REACH: f64 = 2.8;
+
+/// Share of this reach at which half of the powers suffice, and the frequency (rad/s) up to whose power of [`TAYLOR`] all products are
+/// within the range of numbers.
+pub(crate) const SHORT: f64 = 0.25;
+const FASTEST: f64 = 1e10;
 
 type Series = [f64; TAYLOR];
+
+/// Longest time (s) for which the series of a motion hold whose fastest vibration has this frequency.
+pub(crate) fn reach_s(fastest_rad_s: f64) -> f64 {
+    let reach = if fastest_rad_s <= FASTEST { REACH } else { SHORT * REACH };
+    if fastest_rad_s > 0.0 { reach / fastest_rad_s } else { f64::INFINITY }
+}
 
 /// The state of some contacts at the start of a terminal panel.
 pub(crate) struct Window {
@@ -36,6 +46,7 @@ pub(crate) struct Landed {
     /// Of the closed contacts: values at the nodes, and the force.
     pub solved: Vec<Collocated>,
     pub force: Vec<Legendre>,
+    moments: Vec<Series>,
     /// Overlap of every contact of the window at the nodes.
     pub overlap: Vec<Nodal>,
     /// Overlap and its first two derivatives at the end.
@@ -139,36 +150,49 @@ impl Window {
         mut overlap: Vec<Nodal>,
         responses: &[Option<Matrix>],
     ) -> Landed {
-        let force = solved.iter().map(|solved| Legendre::through(&solved.force)).collect();
+        let force = solved.iter().map(|solved| Legendre::through(&solved.acting)).collect();
         for (c, overlap) in overlap.iter_mut().enumerate() {
             respond(overlap, &responses[c * self.closed..(c + 1) * self.closed], &solved);
         }
-        let mut landed = Landed { length, solved, force, overlap, end: Vec::new() };
+        let moments = solved.iter().map(|solved| moments(&solved.acting)).collect();
+        let mut landed = Landed { length, solved, force, moments, overlap, end: Vec::new() };
         landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
         landed
     }
 
     /// Overlap of a contact and its first two derivatives at the end, if these forces are truncated or extrapolated to another
-    /// length.
+    /// length. Those that end as `t^(3/2)` are stretched, since they end with the panel.
     pub fn end(&self, from: &Landed, c: usize, length: f64) -> [f64; 3] {
         let mut end = value(&self.free[c], length);
         let part = length / from.length;
         for (other, force) in from.force.iter().enumerate() {
-            let nodal = match part == 1.0 {
-                true => from.solved[other].force,
-                false => force.at_each(&BASIS.nodes.map(|s| s * part)),
+            let ends = from.solved[other].ends;
+            let moments = match ends.ends || part == 1.0 {
+                true => from.moments[other],
+                false => moments(&force.at_each(&BASIS.nodes.map(|s| s * part))),
             };
-            add_end(&self.kernels[c * self.closed + other], length, &nodal, force.at(part), &mut end);
+            let last = if ends.ends { 0.0 } else { force.at(part) };
+            add_end(&self.kernels[c * self.closed + other], length, &moments, last, &mut end);
         }
         end
     }
 
-    /// The same forces, truncated or extrapolated to another length.
+    /// Advances the modes to the end of a solved panel.
+    pub fn advance(&self, system: &System, landed: &Landed, amplitude: &mut [f64], rate: &mut [f64]) {
+        coast(system, landed.length, amplitude, rate);
+        for (c, moments) in self.contacts[..self.closed].iter().zip(&landed.moments) {
+            push(system, &system.links[*c], landed.length, moments, amplitude, rate);
+        }
+    }
+
+    /// The same forces on another length.
     pub fn carried(&self, from: &Landed, length: f64) -> Landed {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
         let carry = |nodal: &Nodal| Legendre::through(nodal).at_each(&places);
         let carried = |solved: &Collocated| Collocated {
-            force: carry(&solved.force),
+            force: if solved.ends.ends { solved.force } else { carry(&solved.force) },
+            ends: solved.ends,
+            acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
             compression: carry(&solved.compression),
             rate: carry(&solved.rate),
             force_by_rate: solved.force_by_rate,
@@ -182,7 +206,7 @@ impl Window {
 fn respond(overlap: &mut Nodal, responses: &[Option<Matrix>], solved: &[Collocated]) {
     for (response, solved) in responses.iter().zip(solved) {
         if let Some(response) = response {
-            let moved = apply(response, &solved.force);
+            let moved = apply(response, &solved.acting);
             (0..Q).for_each(|i| overlap[i] += moved[i]);
         }
     }
@@ -247,10 +271,24 @@ fn response(kernel: &Series, length: f64) -> Option<Matrix> {
     })
 }
 
-/// Adds overlap, rate and acceleration at the end under these nodal forces, of which `last` is that at the end.
-fn add_end(kernel: &Series, length: f64, nodal: &Nodal, last: f64, end: &mut [f64; 3]) {
+/// Integrals of `(1 - s)^p/p!` times a force with these nodal values over a panel.
+fn moments(nodal: &Nodal) -> Series {
+    let powers = &BASIS.power_end;
+    vectorized(
+        #[inline(always)]
+        || {
+            let mut moments = [0.0; TAYLOR];
+            for (moment, power) in moments.iter_mut().zip(powers) {
+                *moment = dot(power, nodal);
+            }
+            moments
+        },
+    )
+}
+
+/// Adds overlap, rate and acceleration at the end under a force with these moments, whose value at the end is `last`.
+fn add_end(kernel: &Series, length: f64, moments: &Series, last: f64, end: &mut [f64; 3]) {
     let (scaled, terms) = scaled(kernel, length);
-    let moments: [f64; TAYLOR] = array::from_fn(|p| if p < terms { dot(&BASIS.power_end[p], nodal) } else { 0.0 });
     end[2] -= scaled[1] / length * last;
     for p in 1..terms {
         end[0] -= scaled[p] * length * moments[p];
@@ -300,6 +338,7 @@ pub(crate) fn series_of(
         },
     );
     let mut series = sums.map(|sum| sum.iter().sum());
+    leave_out_infinite(&mut series);
     let mut divided = 1.0;
     for (p, value) in series.iter_mut().enumerate().skip(2) {
         divided *= RECIPROCAL[p];
@@ -329,7 +368,7 @@ fn turning(system: &System, k: usize, end: usize) -> f64 {
 
 /// Free motion of all modes over `length`.
 pub(crate) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
-    let (basis, powers) = (&*BASIS, powers(length));
+    let basis = &*BASIS;
     vectorized(
         #[inline(always)]
         || {
@@ -339,12 +378,14 @@ pub(crate) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &
                     terms = basis.terms::<TAYLOR>(turning(system, k, body.end) * length, terms);
                     let (drag, square) = (lanes(&system.drag[..body.end], k), lanes(&system.square[..body.end], k));
                     let (mut here, mut next) = (lanes(&amplitude[..body.end], k), lanes(&rate[..body.end], k));
-                    let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
-                    for power in &powers[..terms] {
+                    let (mut a, mut b) = (here, next);
+                    // here and next are the terms of amplitude and rate
+                    for n in &RECIPROCAL[1..terms] {
+                        let part = length * n;
                         for l in 0..LANES {
-                            a[l] += power * here[l];
-                            b[l] += power * next[l];
-                            (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                            (here[l], next[l]) = (part * next[l], -part * (drag[l] * next[l] + square[l] * here[l]));
+                            a[l] += here[l];
+                            b[l] += next[l];
                         }
                     }
                     for l in 0..LANES.min(body.end - k) {
@@ -356,25 +397,9 @@ pub(crate) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &
     )
 }
 
-/// `length^p/p!`.
-fn powers(length: f64) -> Series {
-    let mut power = 1.0;
-    array::from_fn(|p| {
-        let this = power;
-        power *= length * RECIPROCAL[p + 1];
-        this
-    })
-}
-
-/// Adds the effect of nodal contact forces on the modes within a panel of `length`.
-pub(crate) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
-    // the response of a mode is the sum of the derivatives of its impulse response times the moments of the force
-    let mut power = length;
-    let moments: Series = array::from_fn(|p| {
-        let moment = power * dot(&BASIS.power_end[p], nodal);
-        power *= length;
-        moment
-    });
+/// Adds the effect of a contact force with these moments on the modes within a panel of `length`.
+fn push(system: &System, link: &Link, length: f64, moments: &Series, amplitude: &mut [f64], rate: &mut [f64]) {
+    // the response of a mode is the sum of the derivatives of its impulse response, times powers of the length, times the moments
     let basis = &*BASIS;
     vectorized(
         #[inline(always)]
@@ -385,13 +410,14 @@ pub(crate) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amp
                     let at = modes.start + k;
                     terms = basis.terms::<TAYLOR>(turning(system, at, modes.end) * length, terms);
                     let (drag, square) = (lanes(&system.drag[..modes.end], at), lanes(&system.square[..modes.end], at));
-                    let (mut here, mut next) = ([0.0; LANES], [1.0; LANES]);
+                    let (mut here, mut next) = ([0.0; LANES], [length; LANES]);
                     let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
                     for moment in &moments[..terms] {
                         for l in 0..LANES {
                             a[l] += here[l] * moment;
                             b[l] += next[l] * moment;
-                            (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                            let bend = drag[l] * next[l] + square[l] * here[l];
+                            (here[l], next[l]) = (length * next[l], -length * bend);
                         }
                     }
                     for l in 0..LANES.min(psi.len() - k) {

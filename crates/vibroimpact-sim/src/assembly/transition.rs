@@ -8,11 +8,18 @@ use super::solution::Interval;
 use super::state::{Phase, State, Touch};
 use super::terminal::{series_of, value};
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
+use crate::panel::ends::EXPONENT;
 use crate::panel::peak::Peak;
-use contact_models::{After, Branch, Memory, boundaries};
+use contact_models::{After, Boundary, Branch, Memory, boundaries};
 
-/// Relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch.
-pub(super) const SINGULAR: f64 = 1e-4;
+/// Bound on the relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch, and its derivatives.
+pub(super) const SINGULAR: f64 = 2.5e-4;
+/// The same for a force that is represented as `t^(3/2)` times a polynomial, by its impulse relative to the momentum.
+const WEIGHTED: f64 = 4e-6;
+
+/// A force is taken for one that begins as `t^(3/2)` if from one to two of these parts of its scale it grows so to 1e-3.
+const NEAR: f64 = 1e-3;
+const ALIKE: f64 = 1e-3;
 
 /// Largest number of boundaries that a contact passes as it begins.
 const MOST_PASSED: usize = 16;
@@ -128,6 +135,7 @@ impl<'a> March<'a> {
             force_by_rate: true,
             residue: 0.0,
             rate_residue: 0.0,
+            begins: false,
             previous: None,
             interval,
             peak_force: Peak::NONE,
@@ -150,6 +158,16 @@ impl<'a> March<'a> {
         if let Some(branch) = branch {
             self.enter(c, branch);
         }
+        // of forces that begin together, a small change lets one begin within the panel of the other
+        let others = self.states.iter_mut().enumerate().filter(|(other, _)| *other != c);
+        let mut together = false;
+        for touch in others.filter_map(|(_, other)| other.touch_mut()).filter(|touch| touch.previous.is_none()) {
+            (touch.begins, together) = (false, true);
+        }
+        let begins = beyond == 0.0 && !together && self.begins_singular(c);
+        if let Some(touch) = self.states[c].touch_mut() {
+            touch.begins = begins;
+        }
         let first = self.first_level(c);
         self.level = if alone { first } else { self.level.max(first) };
         self.event(c, Event::Touch { overlaps: beyond > 0.0 });
@@ -165,8 +183,32 @@ impl<'a> March<'a> {
             touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
             // assumed until the first panel shows the opposite
             touch.force_by_rate = true;
+            touch.begins = false;
         }
+        let State { vanishes, .. } = &mut self.states[c];
+        let mut vanishes = std::mem::take(vanishes);
+        vanishes.clear();
+        for which in 0..self.states[c].ends.len() {
+            let Boundary { per_compression, per_rate, level } = self.states[c].ends[which];
+            vanishes
+                .push(per_rate == 0.0 && per_compression > 0.0 && self.is_singular(c, level / per_compression, 0.0));
+        }
+        self.states[c].vanishes = vanishes;
         self.forget_horizons();
+    }
+
+    /// Whether the force of a contact that has just closed begins as `t^(3/2)`: its surfaces approach, and its force grows so.
+    fn begins_singular(&mut self, c: usize) -> bool {
+        let State { overlap, rate, .. } = self.states[c];
+        rate > 0.0 && self.is_singular(c, overlap, rate)
+    }
+
+    /// Whether the force of a closed contact grows from this compression on as its power of 3/2.
+    fn is_singular(&mut self, c: usize, from: f64, rate: f64) -> bool {
+        let Some((scale, _)) = self.states[c].scales() else { return false };
+        let mut at = |part: f64| self.force_at(c, (from + part * NEAR * scale, rate));
+        let (near, far) = (at(1.0), at(2.0));
+        near > 0.0 && (far / near - 2f64.powf(EXPONENT)).abs() < ALIKE * far / near
     }
 
     /// The transition at a zero of an event function.
@@ -235,7 +277,11 @@ impl<'a> March<'a> {
         series[0] = self.states[c].overlap;
         let largest = series.map(f64::abs);
         let law = self.law(c);
-        let allowed = self.impulse_tolerance(c) / SINGULAR;
+        let tolerance = self.impulse_tolerance(c);
+        let allowed = match touch.begins {
+            true => (tolerance * self.states[c].momentum / WEIGHTED).sqrt(),
+            false => tolerance / SINGULAR,
+        };
         let small = |j: i32| {
             let h = step_s(j);
             let within = h.min(self.reach);

@@ -6,10 +6,11 @@ use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, dot, slopes, work_of_unit_forces};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
-const NEWTON_SHARE: f64 = 1e-2;
+pub(super) const NEWTON_SHARE: f64 = 1e-2;
 
 /// A force is extrapolated by at most this many panels for a first guess. Beyond, its value at the end is a better guess: a terminal
 /// panel can be many orders shorter than the next one.
@@ -42,14 +43,14 @@ impl<'a> March<'a> {
         overlap.clear();
         overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         unknowns.clear();
-        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
+        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i], |c| self.begins(c)));
         let (system, responses) = (self.system, &*self.responses);
         let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]).map(|r| &r.nodes);
         if !collocate(unknowns, response, h, (&mut self.newton, solved), &mut self.counts) {
             return false;
         }
         force.clear();
-        force.extend(solved.iter().map(|solved| Legendre::through(&solved.force)));
+        force.extend(solved.iter().map(|solved| Legendre::through(&solved.acting)));
         self.watch(h, contacts, closed, force);
         if contacts.len() > closed {
             let (open, closed) = (&contacts[closed..], &contacts[..closed]);
@@ -75,7 +76,7 @@ impl<'a> March<'a> {
                     if i >= closed {
                         for j in 0..Q {
                             for i in 0..Q {
-                                nodal[i] += response.nodes[j][i] * solved.force[j];
+                                nodal[i] += response.nodes[j][i] * solved.acting[j];
                             }
                         }
                     }
@@ -95,6 +96,7 @@ impl<'a> March<'a> {
         contacts: &'s [usize],
         h: f64,
         free: impl Fn(usize) -> Nodal + 's,
+        ends: impl Fn(usize) -> Ends + 's,
     ) -> impl Iterator<Item = Unknown<'a>> + 's {
         let unknown = move |(i, &c): (usize, &usize)| {
             let state = &self.states[c];
@@ -112,9 +114,15 @@ impl<'a> March<'a> {
                 force_by_rate: touch.force_by_rate,
                 accuracy: NEWTON_SHARE * self.impulse_tolerance(c) / h,
                 guess,
+                ends: ends(c),
             })
         };
         contacts.iter().enumerate().filter_map(unknown)
+    }
+
+    /// How the force of a closed contact begins on a panel from here on.
+    pub(super) fn begins(&self, c: usize) -> Ends {
+        Ends { begins: self.states[c].touch().is_some_and(|touch| touch.begins), ends: false }
     }
 
     /// Increase of the overlap of a contact up to the nodes without contact forces.
@@ -127,7 +135,7 @@ impl<'a> March<'a> {
     pub(super) fn commit(&mut self, level: i32, trial: &Trial) {
         let h = step_s(level);
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
-        self.show(h, &contacts[..closed], &trial.force);
+        self.show(h, &contacts[..closed], &trial.force, &trial.solved);
         self.account_for(level, trial);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {
@@ -149,7 +157,7 @@ impl<'a> March<'a> {
             let mut moved = trial.unknowns[i].free;
             for (&other, solved) in closed.iter().zip(&trial.solved) {
                 if let Some(response) = self.responses.of(self.system, level, c, other) {
-                    let forced = apply(&response.nodes, &solved.force);
+                    let forced = apply(&response.nodes, &solved.acting);
                     moved.iter_mut().zip(forced).for_each(|(moved, forced)| *moved += forced);
                 }
             }

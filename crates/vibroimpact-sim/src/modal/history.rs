@@ -136,7 +136,7 @@ impl<L: ContactLaw> History<L> {
         let within = |stretch: &&Stretch| (from_s..to_s).contains(&(stretch.start_s + 0.5 * stretch.length_s));
         let panels = self.recorded.stretches.iter().filter(within).flat_map(|stretch| {
             let Stretch { start_s, length_s, .. } = *stretch;
-            stretch.forces.iter().map(move |&(_, force)| pulse::Panel { start_s, length_s, force })
+            stretch.forces.iter().map(move |acting| pulse::Panel { start_s, length_s, force: acting.force })
         });
         Pulse { from_s, panels: panels.collect() }
     }

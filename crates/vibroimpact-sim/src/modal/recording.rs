@@ -72,7 +72,7 @@ pub(crate) fn work_and_damping_j(system: &System, record: &Record, tables: &Tabl
         let start = Moment { system, loads: &loads, time_s: *start_s, amplitude, rate };
         // the end of the record is the start of its last stretch
         dissipation.land(&start);
-        let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().copied().unzip();
+        let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().map(|of| (of.contact, of.force)).unzip();
         dissipation.panel(&start, tables, *length_s, &contacts, &force);
         let level = level_within(*length_s);
         if !contacts.is_empty()

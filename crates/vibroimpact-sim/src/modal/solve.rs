@@ -31,7 +31,7 @@ pub(crate) const SECOND: Unit = Unit(1.0);
 /// of their contacts.
 const FURTHER: f64 = 8.0;
 /// Factor from the largest difference to the uncertainty; the difference from the further solution counts twice.
-const WIDENED: f64 = 2.5;
+const WIDENED: f64 = 3.0;
 /// Share of the tolerance that each contact adds, as its error may vanish in all differences by accident.
 const LEAST: f64 = 2.5e-3;
 

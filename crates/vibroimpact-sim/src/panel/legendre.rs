@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 /// Powers of time in a Taylor series over a terminal step.
-pub(crate) const TAYLOR: usize = 14;
+pub(crate) const TAYLOR: usize = 24;
 /// Powers of time in a Taylor series over a dyadic step, and about its middle: enough for [`SLOW`] rad.
 pub(crate) const SERIES: usize = 42;
 pub(crate) const HALF_SERIES: usize = 30;
@@ -61,6 +61,14 @@ pub(crate) const RECIPROCAL: [f64; SERIES + 2] = {
     }
     table
 };
+
+/// Leaves out powers of time whose coefficients are beyond the range of numbers. Vibrations so fast are expanded over so short a time
+/// that these powers do not matter.
+pub(crate) fn leave_out_infinite(series: &mut [f64; TAYLOR]) {
+    for value in series.iter_mut().filter(|value| !value.is_finite()) {
+        *value = 0.0;
+    }
+}
 
 /// Adds a multiple of a short vector.
 pub(crate) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {

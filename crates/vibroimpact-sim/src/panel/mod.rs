@@ -2,6 +2,7 @@
 
 pub(crate) mod by_damping;
 pub(crate) mod dyadic;
+pub(crate) mod ends;
 pub(crate) mod forcing;
 pub(crate) mod lanes;
 pub(crate) mod legendre;

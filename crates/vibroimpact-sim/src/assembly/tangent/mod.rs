@@ -25,7 +25,8 @@
 //!
 //! # The forces
 //! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
-//! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces.
+//! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces. Where the force begins or ends as `t^(3/2)`,
+//! the modes are moved by `T dF` (`panel/ends.rs`), and `R` stands for `R T`.
 //!
 //! # The loads
 //! Modes are computed relative to their steady motion under the loads. The steady motion has a closed form, and so has its
@@ -80,6 +81,13 @@ enum Ending {
     Run,
 }
 
+/// Where on a panel force and compression of a contact exceed all before, with the slope of the compression.
+#[derive(Clone, Copy)]
+struct Peaks {
+    force: Option<f64>,
+    compression: Option<(f64, f64)>,
+}
+
 /// The end of a panel.
 struct Arrival<'a> {
     length_s: f64,
@@ -130,13 +138,12 @@ impl Walk<'_> {
         let moved = self.tangents.iter().map(|tangent| Moved {
             amplitude: tangent.amplitude.clone(),
             rate: tangent.rate.clone(),
-            force: Vec::new(),
-            overlap: Vec::new(),
+            ..Moved::default()
         });
         let mut moved: Vec<Moved> = moved.collect();
         let state = [first.amplitude.as_slice(), &first.rate];
         let bend = self.acceleration(first.start_s, state, &[], 0.0);
-        let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
+        let slide = Moved { amplitude: first.rate.clone(), rate: bend, ..Moved::default() };
         let end = Arrival { length_s: 0.0, ending: ending(first), state, end_s: None, next: first };
         self.arrive(&end, &[], &mut moved, Some(&slide));
     }
@@ -163,7 +170,7 @@ impl Walk<'_> {
             (Ending::Length, Some(_)) => Ending::Run,
             (ending, _) => ending,
         };
-        let closed: Vec<usize> = stretch.forces.iter().map(|(c, _)| *c).collect();
+        let closed: Vec<usize> = stretch.forces.iter().map(|acting| acting.contact).collect();
         let expansion = self.expansions.of(self.system, self.changes, h, &closed);
         let solved = self.solved(stretch, &expansion);
         if !closed.is_empty() {
@@ -171,7 +178,7 @@ impl Walk<'_> {
             let n = closed.len();
             let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
             let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.responses[p * n + q]);
-            self.blocks.factor(&values, &response, h);
+            self.blocks.factor(&values, |q| solved[q].ends, &response, h);
         }
         let from = [stretch.amplitude.as_slice(), &stretch.rate];
         let bends = [
@@ -254,6 +261,7 @@ impl Walk<'_> {
             }
             for (p, own) in solved.iter().enumerate() {
                 if let Some(slide) = slide {
+                    add(&mut moved.law[p], longer, &slide.law[p]);
                     add(&mut moved.force[p], longer, &slide.force[p]);
                     add(&mut moved.overlap[p], longer, &slide.overlap[p]);
                 }
@@ -262,13 +270,13 @@ impl Walk<'_> {
                 let overlap = Legendre::through(&moved.overlap[p]);
                 let Some(interval) = self.tangents[d].intervals.get_mut(interval) else { continue };
                 interval.impulse_n_s += h * force.mean() + longer * own.force.at(1.0);
-                let end = |place: f64, slope: f64| if place == 1.0 { longer * slope } else { 0.0 };
-                let [by_force, by_compression] = &peaks[p];
-                if let Some((place, slope)) = by_force {
-                    interval.peak_force_n = force.at(*place) + end(*place, slope / h);
+                let Peaks { force: by_force, compression: by_compression } = peaks[p];
+                if let Some(place) = by_force {
+                    interval.peak_force_n = own.ends.value(&own.ends.quotient(&moved.law[p]), place);
                 }
                 if let Some((place, slope)) = by_compression {
-                    interval.peak_compression_m = overlap.at(*place) + end(*place, slope / h);
+                    let end = if place == 1.0 { longer * slope / h } else { 0.0 };
+                    interval.peak_compression_m = overlap.at(place) + end;
                 }
             }
             let tangent = &mut self.tangents[d];
@@ -288,18 +296,20 @@ impl Walk<'_> {
         }
     }
 
-    /// Where on this panel force and compression of each contact exceed all before, with their slope there.
-    fn peaks(&mut self, solved: &[Solved]) -> Vec<[Option<(f64, f64)>; 2]> {
+    fn peaks(&mut self, solved: &[Solved]) -> Vec<Peaks> {
         let of = |own: &Solved| {
-            let compression = Legendre::through(&own.compression);
             let followed = &mut self.contacts[own.contact];
-            [(&own.force, 0), (&compression, 1)].map(|(polynomial, which)| {
-                let (place, value) = polynomial.maximum();
-                (value > followed.peaks[which]).then(|| {
-                    followed.peaks[which] = value;
-                    (place, polynomial.derivative().at(place))
-                })
-            })
+            let exceeds = |(which, value): (usize, f64)| {
+                let exceeds = value > followed.peaks[which];
+                followed.peaks[which] = followed.peaks[which].max(value);
+                exceeds
+            };
+            let compression = Legendre::through(&own.compression);
+            let (by_force, by_compression) =
+                (own.ends.maximum(&own.ends.quotient(&own.law.map(|law| law.force_n))), compression.maximum());
+            let [force, compressed] = [(0, by_force.1), (1, by_compression.1)].map(exceeds);
+            let slope = || compression.derivative().at(by_compression.0);
+            Peaks { force: force.then_some(by_force.0), compression: compressed.then(|| (by_compression.0, slope())) }
         };
         solved.iter().map(of).collect()
     }

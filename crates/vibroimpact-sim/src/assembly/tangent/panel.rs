@@ -2,10 +2,11 @@
 
 use super::expansion::Expansion;
 use super::walk::{LAW_STEP, Moved, Walk, shifted, size_of};
-use crate::assembly::dense::Stretch;
+use crate::assembly::dense::{Acting, Stretch};
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
+use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, add, apply, dot, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
@@ -19,7 +20,9 @@ const LEAST_LAW_STEP: f64 = 1e-9;
 pub(super) struct Solved {
     pub contact: usize,
     pub branch: Branch,
-    /// Force as a polynomial; at the nodes the force, `F'`, `t F` and `t F'`.
+    /// How the law's force begins and ends.
+    pub ends: Ends,
+    /// The polynomial that moves the modes; at the nodes that force, `F'`, `t F` and `t F'`.
     pub force: Legendre,
     pub nodal: Nodal,
     pub force_rate: Nodal,
@@ -65,14 +68,14 @@ impl Walk<'_> {
     pub fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
         let (h, n) = (stretch.length_s, stretch.forces.len());
         let place = BASIS.nodes.map(|s| s * h);
-        let of = |(p, (c, force)): (usize, &(usize, Legendre))| {
+        let of = |(p, Acting { contact: c, force, ends }): (usize, &Acting)| {
             let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
             let branch = stretch.contacts[*c].branch?;
             let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
             let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
             compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
-            for (q, (_, other)) in stretch.forces.iter().enumerate() {
-                let nodal = other.nodal();
+            for (q, other) in stretch.forces.iter().enumerate() {
+                let nodal = other.force.nodal();
                 add(&mut compression, 1.0, &apply(&expansion.responses[p * n + q], &nodal));
             }
             let rate = slopes(followed.overlap, &compression, h);
@@ -91,6 +94,7 @@ impl Walk<'_> {
             Some(Solved {
                 contact: *c,
                 branch,
+                ends: *ends,
                 force: *force,
                 driven: [driven(&nodal), driven_by_timed(&timed), driven_by_timed(&again)],
                 timed,
@@ -129,10 +133,11 @@ impl Walk<'_> {
         let (a, b) = (from.amplitude.as_slice(), from.rate.as_slice());
         let modes_move = change.moves_modes;
         let (fade, stretches) = (&change.fade, &change.stretch);
-        let Moved { amplitude, rate, force, overlap } = into;
+        let Moved { amplitude, rate, law, force, overlap } = into;
         // y and y' at the start
         amplitude.clone_from(&tangent.amplitude);
         rate.clone_from(&tangent.rate);
+        law.clear();
         force.clear();
         overlap.clear();
         if modes_move {
@@ -184,14 +189,15 @@ impl Walk<'_> {
             }
             let slope = slopes(start, &found, h);
             let by_law = self.force_change(d, own);
-            force.push(array::from_fn(|i| {
+            law.push(array::from_fn(|i| {
                 own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * slope[i] + by_law[i]
             }));
             overlap.push(found);
         }
         if n > 0 {
-            self.blocks.solve(force);
+            self.blocks.solve(law);
         }
+        force.extend(solved.iter().zip(&*law).map(|(own, law)| own.ends.acting(law)));
         for (p, found) in overlap.iter_mut().enumerate() {
             for (q, force) in force.iter().enumerate() {
                 add(found, 1.0, &apply(&expansion.responses[p * n + q], force));
@@ -303,39 +309,48 @@ impl Walk<'_> {
         found
     }
 
-    /// Derivative of the state at the end of a panel with respect to its length. The nodes move with the end, and the forces there
-    /// are those of the law, which are more accurate than the slope of the polynomial.
+    /// Derivative of the state at the end of a panel with respect to its length. The nodes move with the end. The law's force there
+    /// changes by `f = F_xi (s xi' + R g) + ..`, and the polynomial that moves the modes by `g = T f - s F'` at unchanged times.
     pub fn slide(&self, passage: &Passage) -> Moved {
         let Passage { from, to, expansion, solved, bends } = passage;
         let (h, n) = (from.length_s, solved.len());
         let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to[0].len()]);
-        let mut force: Vec<Nodal> = solved
-            .iter()
-            .map(|own| {
-                let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
-                array::from_fn(|i| {
-                    let law = &own.law[i];
-                    let by_law = law.per_compression_n_m * own.rate[i] + law.per_rate_n_s_m * bend[i];
-                    BASIS.nodes[i] * (by_law - own.force_rate[i])
-                })
-            })
-            .collect();
-        if n > 0 {
-            self.blocks.solve(&mut force);
-        }
-        let mut overlap = vec![[0.0; Q]; n];
-        for p in 0..n {
+        let carried: Vec<Nodal> = solved.iter().map(|own| times(&BASIS.nodes, &own.force_rate)).collect();
+        let respond = |p: usize, force: &[Nodal]| {
+            let mut moved = [0.0; Q];
             for (q, force) in force.iter().enumerate() {
-                add(&mut overlap[p], 1.0, &apply(&expansion.responses[p * n + q], force));
+                add(&mut moved, 1.0, &apply(&expansion.responses[p * n + q], force));
             }
-            let spans = &self.system.links[solved[p].contact].spans;
-            expansion.forced.push(spans, &Legendre::through(&force[p]), &mut amplitude, &mut rate);
+            moved
+        };
+        let by_law = |(p, own): (usize, &Solved)| -> Nodal {
+            let moved = respond(p, &carried);
+            let slope = slopes(0.0, &moved, h);
+            let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
+            array::from_fn(|i| {
+                let (law, s) = (&own.law[i], BASIS.nodes[i]);
+                law.per_compression_n_m * (s * own.rate[i] - moved[i]) + law.per_rate_n_s_m * (s * bend[i] - slope[i])
+            })
+        };
+        let mut law: Vec<Nodal> = solved.iter().enumerate().map(by_law).collect();
+        if n > 0 {
+            self.blocks.solve(&mut law);
+        }
+        let acting = |((own, law), carried): ((&Solved, &Nodal), &Nodal)| -> Nodal {
+            let acting = own.ends.acting(law);
+            array::from_fn(|i| acting[i] - carried[i])
+        };
+        let force: Vec<Nodal> = solved.iter().zip(&law).zip(&carried).map(acting).collect();
+        let overlap = (0..n).map(|p| respond(p, &force)).collect();
+        for (own, force) in solved.iter().zip(&force) {
+            let spans = &self.system.links[own.contact].spans;
+            expansion.forced.push(spans, &Legendre::through(force), &mut amplitude, &mut rate);
         }
         for k in 0..amplitude.len() {
             amplitude[k] += to[1][k];
             rate[k] += bends[1][k];
         }
-        Moved { amplitude, rate, force, overlap }
+        Moved { amplitude, rate, law, force, overlap }
     }
 }
 

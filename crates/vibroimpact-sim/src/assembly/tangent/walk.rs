@@ -87,7 +87,9 @@ pub(super) struct Followed {
 pub(super) struct Moved {
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
-    /// By the panel's closed contacts: change of force and overlap at the nodes.
+    /// By the panel's closed contacts: change of the law's force at the nodes, which move with the end of the panel; of the polynomial
+    /// that moves the modes and of the overlap, at unchanged times.
+    pub law: Vec<Nodal>,
     pub force: Vec<Nodal>,
     pub overlap: Vec<Nodal>,
 }
