@@ -39,7 +39,7 @@ explicit steps each, and the ratio is that of the cost of a step. A single impac
 the structure. They cost half as much as the impact itself, and the second impact on the same beam repays them.
 
 The target of fifty times the speed of the best explicit solver on the whole system is missed where the ratio is \
-smaller. The operations of the steps do not explain this: an impact takes 9 to 12 times \
+smaller. The operations of the steps do not explain this: an impact takes 11 to 15 times \
 [those of its steps](performance.md#how-far-from-the-floor). The implicit solvers, and those of the thesis and of \
 textbooks, are far slower (figures \
 below). At errors above 1e-4 every solver takes as few steps as it can, so there the ratio is that of the least \
