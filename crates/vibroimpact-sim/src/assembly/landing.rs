@@ -49,6 +49,10 @@ impl<'a> March<'a> {
                 return None;
             }
             let boundary = state.vanishes.iter().position(|vanishes| *vanishes)?;
+            let target = Target { contact, boundary };
+            if !self.ends(target).ends {
+                return None;
+            }
             let end = &state.ends[boundary];
             let compression = Legendre::through(&trial.solved[i].compression);
             let places = std::array::from_fn(|k| reach * (k + 1) as f64 / Q as f64);
@@ -59,7 +63,7 @@ impl<'a> March<'a> {
                 None => (0.0, end.margin(state.overlap, 0.0)),
             };
             let place = from + (places[after] - from) * before / (before - margins[after]);
-            Some(Horizon { target: Target { contact, boundary }, at_s: self.time_s + place * h })
+            Some(Horizon { target, at_s: self.time_s + place * h })
         };
         trial.contacts[..trial.closed].iter().enumerate().find_map(of)
     }
@@ -245,9 +249,12 @@ impl<'a> March<'a> {
         self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q], ends).collect()
     }
 
-    /// How the force of the contact of an event begins and ends on a terminal panel up to it.
+    /// How the force of the contact of an event begins and ends on a terminal panel up to it. While other contacts are closed it is
+    /// taken for smooth: to truncate or extrapolate all forces costs less than to solve for them once more.
     pub(super) fn ends(&self, Target { contact, boundary }: Target) -> Ends {
-        let ends = self.states[contact].is_closed() && self.states[contact].vanishes.get(boundary) == Some(&true);
+        let state = &self.states[contact];
+        let alone = || self.states.iter().filter(|state| state.is_closed()).count() == 1;
+        let ends = state.is_closed() && state.vanishes.get(boundary) == Some(&true) && alone();
         if ends { Ends { ends, ..self.begins(contact) } } else { Ends::SMOOTH }
     }
 

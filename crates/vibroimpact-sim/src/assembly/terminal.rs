@@ -36,7 +36,13 @@ pub(crate) struct Window {
     /// `g^(p)/p!` of the free motion of each contact's overlap.
     pub free: Vec<Series>,
     /// Derivatives of the responses, `[c * closed + c']`; zero where no body is shared.
-    kernels: Vec<Series>,
+    kernels: Vec<Kernel>,
+}
+
+/// Derivatives of a response, of which those from `powers` on are zero.
+struct Kernel {
+    derivatives: Series,
+    powers: usize,
 }
 
 /// A solved terminal panel.
@@ -95,7 +101,8 @@ impl Window {
         series[0] = overlap;
         self.free.push(series);
         for other in &self.contacts[..self.closed] {
-            self.kernels.push(tables.kernel(system, c, *other));
+            let derivatives = tables.kernel(system, c, *other);
+            self.kernels.push(Kernel { derivatives, powers: powers(&derivatives) });
         }
     }
 
@@ -154,7 +161,7 @@ impl Window {
         for (c, overlap) in overlap.iter_mut().enumerate() {
             respond(overlap, &responses[c * self.closed..(c + 1) * self.closed], &solved);
         }
-        let moments = solved.iter().map(|solved| moments(&solved.acting)).collect();
+        let moments = solved.iter().map(|solved| self.moments(&solved.acting)).collect();
         let mut landed = Landed { length, solved, force, moments, overlap, end: Vec::new() };
         landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
         landed
@@ -169,12 +176,28 @@ impl Window {
             let ends = from.solved[other].ends;
             let moments = match ends.ends || part == 1.0 {
                 true => from.moments[other],
-                false => moments(&force.at_each(&BASIS.nodes.map(|s| s * part))),
+                false => self.moments(&force.at_each(&BASIS.nodes.map(|s| s * part))),
             };
             let last = if ends.ends { 0.0 } else { force.at(part) };
             add_end(&self.kernels[c * self.closed + other], length, &moments, last, &mut end);
         }
         end
+    }
+
+    /// Integrals of `(1 - s)^p/p!` times a force with these nodal values over a panel, as many as the responses need.
+    fn moments(&self, nodal: &Nodal) -> Series {
+        let powers = self.kernels.iter().map(|kernel| kernel.powers).max().unwrap_or(0);
+        let integrals = &BASIS.power_end[..powers];
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut moments = [0.0; TAYLOR];
+                for (moment, integral) in moments.iter_mut().zip(integrals) {
+                    *moment = dot(integral, nodal);
+                }
+                moments
+            },
+        )
     }
 
     /// Advances the modes to the end of a solved panel.
@@ -212,11 +235,16 @@ fn respond(overlap: &mut Nodal, responses: &[Option<Matrix>], solved: &[Collocat
     }
 }
 
+/// How many powers a series has; rigid bodies move along short ones.
+fn powers(series: &Series) -> usize {
+    series.iter().rposition(|term| *term != 0.0).map_or(0, |last| last + 1)
+}
+
 /// A series at the nodes of a panel of this length.
 fn values(series: &Series, length: f64) -> Nodal {
     let t = BASIS.nodes.map(|s| s * length);
     let mut values = [0.0; Q];
-    for term in series.iter().rev() {
+    for term in series[..powers(series)].iter().rev() {
         for i in 0..Q {
             values[i] = values[i] * t[i] + term;
         }
@@ -227,7 +255,7 @@ fn values(series: &Series, length: f64) -> Nodal {
 /// Value, first and second derivative of a series at `t`.
 pub(crate) fn value(series: &Series, t: f64) -> [f64; 3] {
     let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
-    for p in (0..TAYLOR).rev() {
+    for p in (0..powers(series)).rev() {
         bend = bend * t + slope;
         slope = slope * t + value;
         value = value * t + series[p];
@@ -236,20 +264,20 @@ pub(crate) fn value(series: &Series, t: f64) -> [f64; 3] {
 }
 
 /// Derivatives of a response times `length^p`, and the number of significant ones.
-fn scaled(kernel: &Series, length: f64) -> (Series, usize) {
-    let mut scaled = *kernel;
+fn scaled(kernel: &Kernel, length: f64) -> (Series, usize) {
+    let mut scaled = kernel.derivatives;
     let mut power = 1.0;
-    for value in &mut scaled {
+    for value in &mut scaled[..kernel.powers] {
         *value *= power;
         power *= length;
     }
     let least = 1e-18 * scaled[1].abs();
-    let terms = scaled.iter().rposition(|value| value.abs() > least).map_or(0, |last| last + 1);
+    let terms = scaled[..kernel.powers].iter().rposition(|value| value.abs() > least).map_or(0, |last| last + 1);
     (scaled, terms)
 }
 
 /// Overlap at the nodes to nodal forces; `None` where there is no response at all.
-fn response(kernel: &Series, length: f64) -> Option<Matrix> {
+fn response(kernel: &Kernel, length: f64) -> Option<Matrix> {
     let (scaled, terms) = scaled(kernel, length);
     let powers = &BASIS.power;
     (terms > 0).then(|| {
@@ -271,23 +299,8 @@ fn response(kernel: &Series, length: f64) -> Option<Matrix> {
     })
 }
 
-/// Integrals of `(1 - s)^p/p!` times a force with these nodal values over a panel.
-fn moments(nodal: &Nodal) -> Series {
-    let powers = &BASIS.power_end;
-    vectorized(
-        #[inline(always)]
-        || {
-            let mut moments = [0.0; TAYLOR];
-            for (moment, power) in moments.iter_mut().zip(powers) {
-                *moment = dot(power, nodal);
-            }
-            moments
-        },
-    )
-}
-
 /// Adds overlap, rate and acceleration at the end under a force with these moments, whose value at the end is `last`.
-fn add_end(kernel: &Series, length: f64, moments: &Series, last: f64, end: &mut [f64; 3]) {
+fn add_end(kernel: &Kernel, length: f64, moments: &Series, last: f64, end: &mut [f64; 3]) {
     let (scaled, terms) = scaled(kernel, length);
     end[2] -= scaled[1] / length * last;
     for p in 1..terms {
