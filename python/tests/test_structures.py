@@ -477,7 +477,7 @@ def test_motion_below_the_band_is_that_of_a_free_structure_or_refused(tmp_path):
     assert found.static_compliances_m_n["tip"] == pytest.approx(float((SHAPES["tip"] ** 2 / OMEGA**2).sum()), rel=1e-3)
     # The lowest mode is below the band.
     file.write_text(function_58("tip") + function_58("end"))
-    with pytest.raises(ValueError, match="the response at tip shows motion below 60 Hz, .* begin below the lowest mode"):
+    with pytest.raises(ValueError, match="the response at tip .* motion below 60 Hz, .* begin below the lowest mode"):
         structures.from_universal(file, PLACES, "tip", 1, band_hz=(60, 200))
 
 
