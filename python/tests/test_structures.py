@@ -475,9 +475,10 @@ def test_motion_below_the_band_is_that_of_a_free_structure_or_refused(tmp_path):
         structures.from_universal(file, PLACES, "tip", 2)
     found = structures.from_universal(file, PLACES, "tip", 2, free=True)
     assert found.static_compliances_m_n["tip"] == pytest.approx(float((SHAPES["tip"] ** 2 / OMEGA**2).sum()), rel=1e-3)
-    # The lowest mode is below the band.
+    # The lowest mode is below the band. Whether it is just seen or just not excluded depends on rounding.
+    told = "(shows|does not exclude)"
     file.write_text(function_58("tip") + function_58("end"))
-    with pytest.raises(ValueError, match="the response at tip .* motion below 60 Hz, .* begin below the lowest mode"):
+    with pytest.raises(ValueError, match=f"the response at tip {told} motion below 60 Hz, .* begin below the lowest mode"):
         structures.from_universal(file, PLACES, "tip", 1, band_hz=(60, 200))
 
 

@@ -1,16 +1,16 @@
 //! Collocation of the contact forces on one panel: the only unknowns of the motion.
 //!
-//! On a panel the force of each closed contact acts as a polynomial, which has the values `T F` at its nodes: `T` is one, but where the
-//! force begins or ends as `t^(3/2)` (`panel/ends.rs`). At each node the law must hold, `F = law(xi, xi')` with
-//! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses. Newton's matrix `1 - F_xi R T - F_rate D R T` has a block for each pair of contacts, which is zero if they share no body. The iteration ends
-//! when the remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
+//! On a panel the force of each closed contact acts as a polynomial, whose values at the nodes are `T F`. `T` is one unless the force
+//! begins or ends as `t^(3/2)` (`panel/ends.rs`). At each node the law must hold, `F = law(xi, xi')` with
+//! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses. Newton's matrix `1 - F_xi R T - F_rate D R T` has a block for
+//! each pair of contacts, which is zero if they share no body. The iteration ends when the remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
 //!
 //! The rate `D xi` is computed only if a boundary of the branch or the force depends on it. The force does not depend on the
 //! rate if the law returns a force whose derivative with respect to the rate is zero at all nodes.
 
 use super::solution::Counts;
 use crate::panel::ends::Ends;
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, apply, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 
@@ -52,6 +52,13 @@ pub(crate) struct Collocated {
     pub rate: Nodal,
     /// Whether the force may depend on the rate: not if the law has returned a force without derivative with respect to the rate.
     pub force_by_rate: bool,
+}
+
+impl Collocated {
+    /// The polynomial `P` of its force `w P`; `acting` is the polynomial that moves the modes, the same for a smooth force.
+    pub fn quotient(&self, acting: &Legendre) -> Legendre {
+        if self.ends.is_smooth() { *acting } else { self.ends.quotient(&self.force) }
+    }
 }
 
 /// Memory of Newton's method: forces and their derivatives from the laws, changes, and the matrix.

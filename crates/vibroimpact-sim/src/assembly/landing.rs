@@ -50,7 +50,7 @@ impl<'a> March<'a> {
             }
             let boundary = state.vanishes.iter().position(|vanishes| *vanishes)?;
             let target = Target { contact, boundary };
-            if !self.ends(target).ends {
+            if !self.ends_at(target).ends {
                 return None;
             }
             let end = &state.ends[boundary];
@@ -87,8 +87,8 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, moved / left).force_n
         });
         self.counts.law_evaluations += Q as u64;
-        let ends = self.ends(target);
-        let excess = ends.largest() * ends.quotient(&force).truncation() * left / tolerance;
+        let ends = self.ends_at(target);
+        let excess = ends.truncation(&ends.quotient(&force)) * left / tolerance;
         if excess > 1.0 { shorter(left, excess, ends) } else { f64::INFINITY }
     }
 
@@ -116,7 +116,7 @@ impl<'a> March<'a> {
         }
         let excess = self.excess(&window, &landed);
         if excess > 1.0 {
-            self.landing = shorter(length, excess, self.ends(target));
+            self.landing = shorter(length, excess, self.ends_at(target));
             self.horizon = Some(Horizon { target, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }
@@ -130,7 +130,7 @@ impl<'a> March<'a> {
         let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
         // other forces are truncated or extrapolated, as polynomials
-        let ends = self.ends(target);
+        let ends = self.ends_at(target);
         let of = |c: usize| if c == target.contact { ends } else { Ends::SMOOTH };
         let mut unknowns = self.unknowns_of(window, length, of);
         let (mut low, mut low_margin) = (0.0, initial);
@@ -251,7 +251,7 @@ impl<'a> March<'a> {
 
     /// How the force of the contact of an event begins and ends on a terminal panel up to it. While other contacts are closed it is
     /// taken for smooth: to truncate or extrapolate all forces costs less than to solve for them once more.
-    pub(super) fn ends(&self, Target { contact, boundary }: Target) -> Ends {
+    pub(super) fn ends_at(&self, Target { contact, boundary }: Target) -> Ends {
         let state = &self.states[contact];
         let alone = || self.states.iter().filter(|state| state.is_closed()).count() == 1;
         let ends = state.is_closed() && state.vanishes.get(boundary) == Some(&true) && alone();
@@ -269,12 +269,11 @@ impl<'a> March<'a> {
 
     /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
-        let of = |((c, solved), end): ((&usize, &Collocated), &[f64; 3])| {
-            let Collocated { force, ends, .. } = solved;
-            let truncation = ends.largest() * ends.quotient(force).truncation();
-            self.error(*c, truncation, landed.length, (end[0], end[1]))
+        let of = |(i, solved): (usize, &Collocated)| {
+            let (truncation, end) = (solved.ends.truncation(&solved.quotient(&landed.force[i])), landed.end[i]);
+            self.error(window.contacts[i], truncation, landed.length, (end[0], end[1]))
         };
-        window.contacts.iter().zip(&landed.solved).zip(&landed.end).map(of).fold(0.0, f64::max)
+        landed.solved.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 
     fn commit_landed(&mut self, window: &Window, landed: &Landed) {

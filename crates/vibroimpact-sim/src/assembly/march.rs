@@ -105,7 +105,7 @@ impl<'a> March<'a> {
         // a terminal panel is not better than a panel of similar length
         let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
         // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
-        let weighted = self.horizon.is_some_and(|horizon| self.ends(horizon.target).ends);
+        let weighted = self.horizon.is_some_and(|horizon| self.ends_at(horizon.target).ends);
         let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
         let mut level = self.level;
         if let Some(Horizon { target, at_s }) = self.horizon {
@@ -153,12 +153,13 @@ impl<'a> March<'a> {
         for (i, &c) in contacts[..closed].iter().enumerate() {
             // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
             let solved = &trial.solved[i];
-            let quotient = if solved.ends.is_smooth() { trial.force[i] } else { solved.ends.quotient(&solved.force) };
+            let (quotient, ends) = (solved.quotient(&trial.force[i]), solved.ends);
             let missed = (self.force_at(c, trial.end[i]) - quotient.at(1.0)).abs();
-            error = error.max(self.error(c, quotient.truncation().max(missed), h, trial.end[i]));
+            error = error.max(self.error(c, ends.truncation(&quotient).max(missed), h, trial.end[i]));
         }
         if error.is_nan() || error > 1.0 {
-            // the error decreases at least like h^5, except on the first panels of a contact, which are short enough from the start
+            // the error decreases at least like h^5, except where a polynomial follows a force that begins as t^(3/2): such panels are
+            // short enough from the start
             let finer = (error.log2() / 5.0) as i32;
             return self.refine(level + finer.clamp(1, 4));
         }

@@ -135,7 +135,7 @@ impl State {
     /// Begins the statistics anew, with the rest of an interval of contact.
     pub fn begin_statistics(&mut self) {
         self.statistics = Statistics::default();
-        if let Phase::Closed(touch) = &mut self.phase {
+        if let Some(touch) = self.touch_mut() {
             touch.interval.peak_force_n = touch.peak_force.value().max(touch.interval.peak_force_n);
             touch.peak_force = Peak::NONE;
         }

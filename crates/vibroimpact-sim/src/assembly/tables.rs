@@ -216,7 +216,6 @@ impl Tables {
             let mut kernel = [0.0; TAYLOR];
             for (k, weight) in one.shared(other_link).filter(|(k, _)| !system.modes[*k].is_rigid()) {
                 let (mut here, mut next) = (0.0, weight);
-                // beyond the range of numbers, series do without these powers
                 for value in &mut kernel {
                     *value += here;
                     (here, next) = (next, -system.drag[k] * next - system.square[k] * here);

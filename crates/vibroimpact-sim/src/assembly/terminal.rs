@@ -14,9 +14,9 @@ use crate::panel::vector::{LANES, vectorized};
 /// The series are used while the fastest motion turns by at most this many radians.
 pub(crate) const REACH: f64 = 2.8;
 
-/// Share of this reach at which half of the powers suffice, and the frequency (rad/s) up to whose power of [`TAYLOR`] all products are
-/// within the range of numbers.
+/// A shorter reach, as a share of the longest. Half of the powers suffice within it.
 pub(crate) const SHORT: f64 = 0.25;
+/// The power [`TAYLOR`] of this frequency (rad/s) is well within the range of numbers. Faster vibrations have the shorter reach.
 const FASTEST: f64 = 1e10;
 
 type Series = [f64; TAYLOR];

@@ -14,10 +14,12 @@ use contact_models::{After, Boundary, Branch, Memory, boundaries};
 
 /// Bound on the relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch, and its derivatives.
 pub(super) const SINGULAR: f64 = 2.5e-4;
-/// The same for a force that is represented as `t^(3/2)` times a polynomial, by its impulse relative to the momentum.
+/// Where the force is represented as `t^(3/2)` times a polynomial, the error of a first panel's impulse relative to the momentum is
+/// this times the square of that impulse relative to the momentum.
 const WEIGHTED: f64 = 4e-6;
 
-/// A force is taken for one that begins as `t^(3/2)` if from one to two of these parts of its scale it grows so to 1e-3.
+/// A force is taken for one that grows as the power of 3/2 if it does so from once to twice this part of the contact's scale, and how
+/// closely (relative).
 const NEAR: f64 = 1e-3;
 const ALIKE: f64 = 1e-3;
 
@@ -59,7 +61,7 @@ impl<'a> March<'a> {
             let Some(boundary) = ends.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
             self.transition(Target { contact: c, boundary });
             // unlike a boundary that was located, these may be far behind
-            if let Phase::Closed(touch) = &mut self.states[c].phase {
+            if let Some(touch) = self.states[c].touch_mut() {
                 (touch.residue, touch.rate_residue) = (0.0, 0.0);
             }
         }
@@ -185,8 +187,7 @@ impl<'a> March<'a> {
             touch.force_by_rate = true;
             touch.begins = false;
         }
-        let State { vanishes, .. } = &mut self.states[c];
-        let mut vanishes = std::mem::take(vanishes);
+        let mut vanishes = std::mem::take(&mut self.states[c].vanishes);
         vanishes.clear();
         for which in 0..self.states[c].ends.len() {
             let Boundary { per_compression, per_rate, level } = self.states[c].ends[which];
@@ -223,7 +224,7 @@ impl<'a> March<'a> {
         match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
                 self.enter(c, branch);
-                if let Phase::Closed(touch) = &mut self.states[c].phase {
+                if let Some(touch) = self.states[c].touch_mut() {
                     touch.residue = residue;
                     touch.rate_residue = if boundary.per_rate == 0.0 { 0.0 } else { residue / boundary.per_rate.abs() };
                 }

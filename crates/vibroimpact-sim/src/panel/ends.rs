@@ -58,8 +58,13 @@ impl Ends {
     }
 
     /// The largest value of `w`.
-    pub fn largest(self) -> f64 {
+    fn largest(self) -> f64 {
         self.at(if self.begins == self.ends { 0.5 } else { f64::from(u8::from(self.begins)) })
+    }
+
+    /// Truncation estimate of the force, from `P`.
+    pub fn truncation(self, quotient: &Legendre) -> f64 {
+        self.largest() * quotient.truncation()
     }
 
     /// Nodal values of the polynomial that moves the modes, from those of the force.
