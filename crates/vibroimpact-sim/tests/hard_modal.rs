@@ -4,7 +4,7 @@
 use crate::common::random::{any_law, any_structure, config, decades};
 use crate::common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, seen_from, settings};
 use beam_modes::{Beam, End, Segment};
-use contact_models::{Hertz, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
+use contact_models::{Felt, Hertz, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
@@ -585,6 +585,30 @@ fn coarse_tolerances_end_too() {
                 let settings = Settings { max_steps: 5_000, ..settings(tolerance) };
                 let solution = Solver::new(&structure).unwrap().solve(&ball(), &hertz(), None, &settings).unwrap();
                 assert_eq!(solution.outcome, Outcome::Rebound, "N = {n}, tolerance {tolerance:e}, b = {location}");
+            }
+        }
+    }
+}
+
+/// The tolerance of a heavy striker allows errors that are large for a structure a millionth as heavy. They must not become energy:
+/// every step and every event has to belong to one motion.
+#[test]
+fn a_structure_far_lighter_than_its_striker_gains_no_energy() {
+    for (mass_kg, speed_m_s) in [(4e4, 1e-3), (500.0, 30.0), (100.0, 1000.0)] {
+        for (exponent, retardation_time_s) in [(2.1, 1e-5), (2.3, 0.08), (3.4, 9e-6), (4.6, 4e-6)] {
+            for modes in [1, 7, 12] {
+                let shape = |k: usize| 60.0 * (1.7 * k as f64).sin();
+                let mode = |k: usize| Mode { omega_rad_s: 40.0 * k as f64, damping_ratio: 0.0, shape: shape(k) };
+                let structure = Structure { modes: (1..=modes).map(mode).collect() };
+                let striker = Striker { mass_kg, speed_m_s };
+                let law = Law::from(Felt::new(1e8, exponent, retardation_time_s).unwrap());
+                let settings = Settings { max_steps: 2_000, ..settings(1e-5) };
+                let solution = Solver::new(&structure).unwrap().solve(&striker, &law, None, &settings).unwrap();
+                let kept = energy_kept(&structure, &striker, &solution);
+                assert!(
+                    kept <= 1.0 + settings.tolerance,
+                    "{mass_kg} {speed_m_s} {exponent} {modes}: energy times {kept}"
+                );
             }
         }
     }

@@ -110,25 +110,12 @@ impl Newton {
         change.resize(n, [0.0; Q]);
         let mut factored = false;
         let mut last: Option<f64> = None;
+        follow(unknowns, response, h, found);
         for _ in 0..ITERATIONS_MAX {
             counts.newton_iterations += 1;
             for (c, unknown) in unknowns.iter().enumerate() {
-                let mut moved = unknown.free;
-                for other in 0..n {
-                    if let Some(response) = response(c, other) {
-                        let forced = apply(response, &found[other].acting);
-                        for i in 0..Q {
-                            moved[i] += forced[i];
-                        }
-                    }
-                }
-                if unknown.ends_by_rate || found[c].force_by_rate {
-                    found[c].rate = slopes(0.0, &moved, h);
-                }
-                let compression = moved.map(|moved| unknown.start + moved);
-                found[c].compression = compression;
                 for i in 0..Q {
-                    values[c][i] = unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]);
+                    values[c][i] = unknown.law.force(&unknown.branch, found[c].compression[i], found[c].rate[i]);
                 }
                 counts.law_evaluations += Q as u64;
                 if found[c].force_by_rate {
@@ -161,6 +148,7 @@ impl Newton {
                 converged &= largest <= 1e-15 * size;
                 excess = excess.max(largest / unknown.accuracy);
             }
+            follow(unknowns, response, h, found);
             // with a constant matrix the changes shrink by a constant ratio, from which the remaining correction follows
             let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
             if converged || ratio * excess <= 1.0 {
@@ -172,6 +160,31 @@ impl Newton {
             last = Some(excess);
         }
         false
+    }
+}
+
+/// Compressions and their rates at the nodes under these forces.
+#[inline(always)]
+fn follow<'r>(
+    unknowns: &[Unknown],
+    response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
+    h: f64,
+    found: &mut [Collocated],
+) {
+    for (c, unknown) in unknowns.iter().enumerate() {
+        let mut moved = unknown.free;
+        for (other, solved) in found.iter().enumerate() {
+            if let Some(response) = response(c, other) {
+                let forced = apply(response, &solved.acting);
+                for i in 0..Q {
+                    moved[i] += forced[i];
+                }
+            }
+        }
+        if unknown.ends_by_rate || found[c].force_by_rate {
+            found[c].rate = slopes(0.0, &moved, h);
+        }
+        found[c].compression = moved.map(|moved| unknown.start + moved);
     }
 }
 

@@ -4,13 +4,20 @@
 use super::collocate::Collocated;
 use super::enclosure::{Pull, of_panel};
 use super::event::{Beginning, EventFunction, Verdict};
+use super::interpolation::ORDERS;
 use super::motion::{MAGNIFIED, March, Target};
 use super::state::Touch;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, TAYLOR};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
 const TAIL: f64 = 10.0;
+
+/// Under the last Legendre polynomial as the acceleration an overlap is of the ninth degree. The polynomial through start and nodes
+/// then misses `s P_8(2s - 1)/270` (panel length 1), and the rates at the nodes its slope. These are bounds on that, on its slope, and
+/// on what the slope does to the quotient of an event function that depends on the rate. Other quotients are of at most the eighth
+/// degree.
+const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 
 /// Result of testing the event functions of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +46,7 @@ impl<'a> March<'a> {
         }
         for (i, &c) in contacts.iter().enumerate() {
             let state = &self.states[c];
-            let mut rho = [0.0; 3];
+            let mut rho = [0.0; ORDERS];
             if enclosed {
                 let missed = self.tables.missed(self.system, level_within(h));
                 rho = of_panel(
@@ -52,6 +59,7 @@ impl<'a> March<'a> {
                     (&pulls, &mut self.held),
                 );
             }
+            let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| last_coefficient(&solved[i].acting));
             let noise = self.panel_noise(c, h);
             let mut acceleration = None;
             let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
@@ -61,7 +69,11 @@ impl<'a> March<'a> {
                 let function = EventFunction {
                     start,
                     nodal,
-                    rho: [0, 1, 2].map(|r| per_overlap * rho[r] + per_rate * rho.get(r + 1).copied().unwrap_or(0.0)),
+                    rho: [
+                        per_overlap * (rho[0] + BEYOND[0] * beyond) + per_rate * (rho[1] + BEYOND[1] * beyond),
+                        per_overlap * rho[1] + per_rate * (rho[2] + BEYOND[2] * beyond),
+                        per_overlap * rho[2],
+                    ],
                     noise,
                     residue: 2.0 * residue,
                     slope_residue: 2.0 * per_overlap * rate_residue * h,
@@ -138,14 +150,16 @@ impl<'a> March<'a> {
 
     /// Uncertainty of the acceleration of the overlap of a contact by the truncation of the closed contacts' forces (m/s^2).
     fn unresolved(&self, c: usize, closed: &[usize], solved: &[Collocated]) -> f64 {
+        self.moved_by(c, closed, |i| TAIL * Legendre::through(&solved[i].acting).truncation())
+    }
+
+    /// Bound on the acceleration of the overlap of a contact (m/s^2) by forces of this size in the closed contacts.
+    fn moved_by(&self, c: usize, closed: &[usize], force_n: impl Fn(usize) -> f64) -> f64 {
         let links = &self.system.links;
-        let of = |(other, solved): (&usize, &Collocated)| {
-            // no product of weights is larger
-            let weight = (links[c].mobility * links[*other].mobility).sqrt();
-            weight * TAIL * Legendre::through(&solved.acting).truncation()
-        };
-        let shares = |(other, _): &(&usize, &Collocated)| self.system.neighbours[c].contains(other);
-        closed.iter().zip(solved).filter(shares).map(of).sum()
+        // no product of weights is larger
+        let weight = |other: usize| (links[c].mobility * links[other].mobility).sqrt();
+        let shares = |(_, other): &(usize, &usize)| self.system.neighbours[c].contains(other);
+        closed.iter().enumerate().filter(shares).map(|(i, &other)| weight(other) * force_n(i)).sum()
     }
 
     /// The forces of closed contacts at the start of a panel.
@@ -157,5 +171,40 @@ impl<'a> March<'a> {
             Some(Pull { link: &self.system.links[*c], force_n: force.at(1.0), rate_n_s: slope / h })
         };
         closed.iter().filter_map(pull)
+    }
+}
+
+/// Size of the last coefficient of the polynomial with these values at the nodes.
+fn last_coefficient(nodal: &Nodal) -> f64 {
+    BASIS.to_coefficients.iter().zip(nodal).map(|(column, value)| column[Q - 1] * value).sum::<f64>().abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::legendre::slopes;
+
+    /// The overlap under the last Legendre polynomial as the acceleration, integrated twice by the differential equation of these
+    /// polynomials, is `s^2 (1 - s)^2` times the slope of the slope of `P_7`, over `7 8 (7 8 - 2)`.
+    #[test]
+    fn what_the_polynomial_of_the_overlap_misses_is_bounded() {
+        let last = Legendre(std::array::from_fn(|n| f64::from(u8::from(n == Q - 1))));
+        let bends = last.derivative().derivative();
+        let moved = |s: f64| (s * (1.0 - s)).powi(2) * bends.at(s) / (56.0 * 54.0);
+        let rate = |s: f64| (moved(s + 1e-6) - moved(s - 1e-6)) / 2e-6;
+        let nodal = BASIS.nodes.map(moved);
+        let found = slopes(0.0, &nodal, 1.0);
+        for (s, found) in BASIS.nodes.iter().zip(found) {
+            assert!((found - rate(*s)).abs() <= BEYOND[1] && (found - rate(*s)).abs() > 1e-3 * BEYOND[1], "{s}");
+        }
+        // the missed part is largest at the end, where the overlap itself is zero
+        let at_end: f64 = BASIS.nodes.iter().zip(nodal).map(|(s, value)| value * lagrange(*s, 1.0)).sum();
+        assert!((at_end.abs() - BEYOND[0]).abs() < 1e-12, "{at_end}");
+    }
+
+    /// Of the polynomial through zero and the nodes, the part that belongs to this node.
+    fn lagrange(node: f64, at: f64) -> f64 {
+        let others = BASIS.nodes.iter().filter(|other| **other != node);
+        others.fold(at / node, |product, other| product * (at - other) / (node - other))
     }
 }

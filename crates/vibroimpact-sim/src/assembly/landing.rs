@@ -14,6 +14,8 @@ use crate::panel::legendre::{BASIS, Legendre, Q};
 /// `(t - end)^(3/2)` and is represented so.
 const LANDING: f64 = 2.5;
 const LANDING_WEIGHTED: f64 = 5.0;
+/// An event function has fallen to zero where it is smaller than this part of its largest value.
+const MET: f64 = 1e-3;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
 const CARRIED: f64 = 0.05;
 
@@ -133,7 +135,7 @@ impl<'a> March<'a> {
         let ends = self.ends_at(target);
         let of = |c: usize| if c == target.contact { ends } else { Ends::SMOOTH };
         let mut unknowns = self.unknowns_of(window, length, of);
-        let (mut low, mut low_margin) = (0.0, initial);
+        let (mut low, mut low_margin, mut largest) = (0.0, initial, initial);
         let mut high: Option<(f64, f64)> = None;
         let mut side = 0;
         for _ in 0..60 {
@@ -148,6 +150,7 @@ impl<'a> March<'a> {
             if margin.abs() <= 1e-13 * initial {
                 return Some(landed);
             }
+            largest = largest.max(margin.abs());
             if margin > 0.0 {
                 if let Some((_, high_margin)) = &mut high
                     && side > 0
@@ -178,7 +181,8 @@ impl<'a> March<'a> {
                     match guesses.into_iter().chain([0.5 * (low + high)]).find(within) {
                         // the motion after the event does not depend on these last digits of the time
                         Some(next) if (next - length).abs() > 1e-13 * high => next,
-                        _ => return Some(landed),
+                        // a function that jumps over zero depends on where Newton's method ends: the panel is too long
+                        _ => return (margin.abs() <= MET * largest).then_some(landed),
                     }
                 }
             };

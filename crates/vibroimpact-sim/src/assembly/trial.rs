@@ -7,7 +7,7 @@ use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
 use crate::panel::ends::Ends;
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, apply, dot, slopes, work_of_unit_forces};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, dot, slopes, work_of_unit_forces};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 pub(super) const NEWTON_SHARE: f64 = 1e-2;
@@ -146,21 +146,14 @@ impl<'a> March<'a> {
         self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
     }
 
-    /// Adds the work on the closed contacts, if it is requested. The compressions with which Newton's method ended do not include
-    /// the last change of the forces.
+    /// Adds the work on the closed contacts, if it is requested.
     fn account_for(&mut self, level: i32, trial: &Trial) {
         if !self.wants_contact_work() {
             return;
         }
         let closed = &trial.contacts[..trial.closed];
         for (i, &c) in closed.iter().enumerate() {
-            let mut moved = trial.unknowns[i].free;
-            for (&other, solved) in closed.iter().zip(&trial.solved) {
-                if let Some(response) = self.responses.of(self.system, level, c, other) {
-                    let forced = apply(&response.nodes, &solved.acting);
-                    moved.iter_mut().zip(forced).for_each(|(moved, forced)| *moved += forced);
-                }
-            }
+            let moved = trial.solved[i].compression.map(|compression| compression - self.states[c].overlap);
             self.add_contact_work(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
         }
         if self.account.is_none() {
