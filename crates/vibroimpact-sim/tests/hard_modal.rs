@@ -613,3 +613,22 @@ fn a_structure_far_lighter_than_its_striker_gains_no_energy() {
         }
     }
 }
+
+/// Such a dashpot stops the striker within 0.1 ns, and what is left is rounding. The contact then begins and ends within it, and must
+/// not let the surfaces pass through each other.
+#[test]
+fn a_contact_within_rounding_gains_no_energy() {
+    for mass_kg in [1e-6, 1.7e-6, 3e-6, 1e-5] {
+        for damping_n_s_m in [1e4, 3e4, 1e5] {
+            for shape in [0.03, 0.17, 0.5] {
+                let structure = Structure { modes: vec![Mode { omega_rad_s: 92.0, damping_ratio: 0.036, shape }] };
+                let striker = Striker { mass_kg, speed_m_s: 120.0 };
+                let law = Law::from(KelvinVoigt::new(8.5e7, damping_n_s_m).unwrap());
+                let settings = Settings { max_steps: 20_000, ..settings(1e-8) };
+                let solution = Solver::new(&structure).unwrap().solve(&striker, &law, None, &settings).unwrap();
+                let kept = energy_kept(&structure, &striker, &solution);
+                assert!(kept <= 1.0 + settings.tolerance, "{mass_kg} {damping_n_s_m} {shape}: energy times {kept}");
+            }
+        }
+    }
+}

@@ -9,7 +9,8 @@
 //! A branch may begin on its boundary, where `m(0) = 0` to rounding. The polynomial `(m(s) - m(0))/s` is then tested in place of
 //! `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. If the slope is zero
 //! too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is tested. If the tested function is
-//! negative before it was ever positive, the branch ends where it begins.
+//! negative before it was ever positive, the branch ends where it begins. A function that begins above rounding, but within the
+//! residue of the transition before, is first tested itself: it may fall without becoming zero.
 //!
 //! A start without slope depends on the sign of a small number. Whether surfaces that touch without speed and without force
 //! separate or press each other follows from the forces of other contacts. These forces are polynomials with a truncation error
@@ -63,26 +64,31 @@ pub(crate) struct Beginning {
 impl EventFunction {
     /// `beginning` is evaluated only if the function begins at zero.
     pub fn verdict(&self, beginning: impl FnOnce() -> Beginning) -> Verdict {
-        self.question(beginning).map_or(Verdict::Meets(0.0), |question| question.verdict())
-    }
-
-    /// The polynomial that has to stay positive; `None` if it is not positive at the start.
-    fn question(&self, beginning: impl FnOnce() -> Beginning) -> Option<Question> {
         // the polynomial passes through the start, where the only error is rounding
         let known = self.noise + self.residue;
         if self.start < -known {
-            return None;
+            return Verdict::Meets(0.0);
         }
-        let [rho, rho_slope, rho_bend] = self.rho;
-        if self.start > known {
-            return Some(Question::new(&with(self.start, &self.nodal), rho, self.noise, false));
+        if self.start > self.noise {
+            let verdict = Question::new(&with(self.start, &self.nodal), self.rho[0], self.noise, false).verdict();
+            // a function that does not begin at zero need not end where it begins, though it may be small and fall
+            let apart = verdict == Verdict::Clear || matches!(verdict, Verdict::Meets(place) if place > FINEST);
+            if self.start > known || apart {
+                return verdict;
+            }
         }
+        self.from_zero(beginning).verdict()
+    }
+
+    /// Of a function that begins at zero, the quotient that has to stay positive.
+    fn from_zero(&self, beginning: impl FnOnce() -> Beginning) -> Question {
+        let [_, rho_slope, rho_bend] = self.rho;
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
         let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
         let Beginning { slope, bend, unresolved } = beginning();
         let begins_level = slope.abs() <= self.noise + self.slope_residue;
-        Some(match bend {
+        match bend {
             // the slope at the start is better known than those that are quotients
             Some(bend) if begins_level => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
@@ -92,7 +98,7 @@ impl EventFunction {
             None if begins_level => Question::new(&with(slope, &slopes), rho_slope, noise + unresolved, true),
             // a shorter panel resolves a slope that is not zero
             _ => Question::new(&with(slope, &slopes), rho_slope + unresolved, noise, true),
-        })
+        }
     }
 }
 

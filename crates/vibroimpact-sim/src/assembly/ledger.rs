@@ -34,12 +34,11 @@
 //!
 //! # Residual and rounding
 //! Only `unaccounted_j` is the difference of the other parts, and consists of their rounding. A contact's work is computed by
-//! quadrature of its overlap, and exactly for harmonic loads and for the modes that turn fast on a panel (`excess.rs`). The
-//! overlap with which Newton's method ends does not include the last change of the force. It is not used here, because its error
-//! would exceed the other errors at loose tolerances. Each panel rounds the parts relative to the energy of the relative motion.
-//! That energy is large if a sampled load changes within a small part of a slow mode's period, or if the frequency of a harmonic
-//! load is nearly that of an undamped mode: the steady motion is then large, and free motion of the same size cancels it. Errors
-//! of two parts can cancel in `unaccounted_j`, so `rounding_j` states their bound.
+//! quadrature of its overlap, and exactly for harmonic loads and for the modes that turn fast on a panel (`excess.rs`). Each panel
+//! rounds the parts relative to the energy of the relative motion. That energy is large if a sampled load changes within a small part
+//! of a slow mode's period, or if the frequency of a harmonic load is nearly that of an undamped mode: the steady motion is then
+//! large, and free motion of the same size cancels it. Errors of two parts can cancel in `unaccounted_j`, so `rounding_j` states their
+//! bound.
 
 use super::damping_series::lost_within;
 use super::load::Loads;
