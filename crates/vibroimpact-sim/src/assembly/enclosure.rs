@@ -80,21 +80,45 @@ pub(crate) fn of_panel(
         let [values, slopes, bends] = missed.0.each_ref().map(|row| &row[modes.clone()]);
         let [inverse, a, b] = [&system.inverse, amplitude, rate].map(|row| &row[modes.clone()]);
         let psi = &span.psi[from..];
-        held.hold(&span.modes, from, inverse, pulls);
-        let rows = [psi, a, b, &held.at, &held.rate, inverse, values, slopes, bends];
-        let by_span = vectorized(
-            #[inline(always)]
-            || {
-                sum_over(
-                    rows,
-                    #[inline(always)]
-                    |[psi, a, b, at, rate, inverse, value, slope, bend]| {
-                        let size = psi.abs() * ((a - at).abs() + (b - rate).abs() * inverse);
-                        [size * value, size * slope, size * bend]
-                    },
-                )
-            },
-        );
+        // the displacement under a single force needs no memory
+        let alone = match pulls {
+            [pull] if system.most_damping <= OVERDAMPED => pull.link.span(&span.modes).map(|partner| (pull, partner)),
+            _ => None,
+        };
+        let by_span = if let Some((pull, partner)) = alone {
+            let rows = [psi, a, b, &partner.psi[from..], inverse, values, slopes, bends];
+            let (force, growth) = (pull.force_n, pull.rate_n_s);
+            vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        rows,
+                        #[inline(always)]
+                        |[psi, a, b, partner, inverse, value, slope, bend]| {
+                            let yields = partner * inverse * inverse;
+                            let size = psi.abs() * ((a + yields * force).abs() + (b + yields * growth).abs() * inverse);
+                            [size * value, size * slope, size * bend]
+                        },
+                    )
+                },
+            )
+        } else {
+            held.hold(&span.modes, from, inverse, pulls);
+            let rows = [psi, a, b, &held.at, &held.rate, inverse, values, slopes, bends];
+            vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        rows,
+                        #[inline(always)]
+                        |[psi, a, b, at, rate, inverse, value, slope, bend]| {
+                            let size = psi.abs() * ((a - at).abs() + (b - rate).abs() * inverse);
+                            [size * value, size * slope, size * bend]
+                        },
+                    )
+                },
+            )
+        };
         (0..ORDERS).for_each(|r| rho[r] += by_span[r]);
         if system.most_damping <= OVERDAMPED {
             continue;
