@@ -9,7 +9,7 @@ use super::system::System;
 use crate::panel::dyadic::step_s;
 use crate::panel::lanes::Lanes;
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, add_motion, apply, dot};
-use crate::panel::vector::{LANES, sum_of_lanes, vectorized};
+use crate::panel::vector::{LANES, sum_of_lanes, sum_over, vectorized};
 use std::array;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -23,8 +23,8 @@ pub(crate) struct Damping {
 
 /// Mode by mode.
 struct ByMode {
-    /// Loss by `a^2`, `a b` and `b^2`.
-    free: Vec<[f64; 3]>,
+    /// Loss by `a^2`, by `a b`, and by `b^2`.
+    free: [Vec<f64>; 3],
     /// Loss by `a g_n` and `b g_n`.
     cross: Vec<(Nodal, Nodal)>,
 }
@@ -39,7 +39,8 @@ impl ByMode {
         for n in 0..Q {
             (from_a[n], from_b[n]) = (-2.0 * square * qq[n][0], 2.0 * bq[n]);
         }
-        self.free.push([square * square * qq[0][0], -2.0 * square * bq[0], *bb]);
+        let free = [square * square * qq[0][0], -2.0 * square * bq[0], *bb];
+        self.free.iter_mut().zip(free).for_each(|(row, lost)| row.push(lost));
         self.cross.push((from_a, from_b));
     }
 }
@@ -105,7 +106,7 @@ impl Damping {
         }
         let h = step_s(j);
         let count = system.modes.len();
-        let mut by_mode = ByMode { free: Vec::with_capacity(count), cross: Vec::with_capacity(count) };
+        let mut by_mode = ByMode { free: [0; 3].map(|_| Vec::with_capacity(count)), cross: Vec::with_capacity(count) };
         vectorized(
             #[inline(always)]
             || {
@@ -158,10 +159,13 @@ impl Damping {
             || {
                 let mut lost = 0.0;
                 for body in damped {
-                    let motion = amplitude[body.clone()].iter().zip(&rate[body.clone()]);
-                    for ([aa, ab, bb], (a, b)) in free[body.clone()].iter().zip(motion) {
-                        lost += (aa * a + ab * b) * a + bb * b * b;
-                    }
+                    let [aa, ab, bb] = free.each_ref().map(|row| &row[body.clone()]);
+                    let [by_body] = sum_over(
+                        [aa, ab, bb, &amplitude[body.clone()], &rate[body.clone()]],
+                        #[inline(always)]
+                        |[aa, ab, bb, a, b]| [(aa * a + ab * b) * a + bb * b * b],
+                    );
+                    lost += by_body;
                 }
                 for (i, &c) in contacts.iter().enumerate() {
                     let mut by_motion = [0.0; Q];

@@ -20,7 +20,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-const NODES: usize = 16;
+const NODES: usize = 13;
 /// Largest number of terms: those of free motion, after those of the force.
 const TERMS: usize = SERIES;
 
