@@ -8,8 +8,9 @@
 //! u = max_v |e_v - e|.
 //! ```
 //!
-//! All four have remainder modes, and twice the expected number of modes for the tolerance or the number of the answer, but not
-//! many more than are stated. They are solved once at a loose tolerance, so that this costs no more than a few times the impact
+//! All four have remainder modes, and twice the expected number of modes for the tolerance or the number of the answer. Where a number
+//! is stated, they have the closest number to it that is between once and twice the expected one, but at most twice the stated one.
+//! They are solved once at a loose tolerance, so that this costs no more than a few times the impact
 //! itself. If a scene does not state the theory, the cheaper one is used if the two differ by less than half the tolerance.
 
 use vibroimpact_sim::both;
@@ -176,7 +177,7 @@ fn theory_of(scene: &Scene) -> BeamTheory {
 /// The number of modes with which the theories are compared.
 fn count(scene: &Scene, needed: Option<usize>, least: usize) -> usize {
     match (needed, scene.modes.count()) {
-        (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
+        (Some(needed), Some(stated)) => stated.clamp(needed, RICHER * needed).min(RICHER * stated.max(1)),
         (Some(needed), None) => (RICHER * needed).max(least),
         (None, stated) => stated.unwrap_or_default(),
     }
