@@ -1,5 +1,5 @@
 //! Solves one problem a number of times, to be counted by a profiler:
-//! `valgrind --tool=callgrind repeat PROBLEM (assembly | dop853) TOLERANCE COUNT`.
+//! `valgrind --tool=callgrind repeat PROBLEM (assembly | dop853) TOLERANCE COUNT`; the defaults are cradle-3, assembly, 1e-6 and 1.
 //! The cost of one run is the difference between two counts over the difference of their numbers of runs.
 
 use impactbench::codes::{dop853, own_assembly};
@@ -8,7 +8,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 fn main() -> Result<(), String> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.is_empty() {
+        arguments = ["cradle-3", "assembly", "1e-6", "1"].map(str::to_owned).into();
+    }
     let [name, code, tolerance, count] = arguments.as_slice() else {
         return Err("usage: repeat PROBLEM (assembly | dop853) TOLERANCE COUNT".into());
     };

@@ -1,7 +1,8 @@
 //! Steps of one impact of the library, and the operations that these steps need by the cost model of docs/performance.md. Solves it
 //! with cached tables a number of times, for callgrind.
 //!
-//! Usage: `impact_floor NAME TOLERANCE [RUNS] [anew]`; with `anew` the tables are built for each impact.
+//! Usage: `impact_floor NAME TOLERANCE [RUNS] [anew]`; the defaults are pinned-hertz and 1e-6. With `anew` the tables are built for
+//! each impact.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,7 +10,10 @@ use vibroimpact_sim::modal::{Settings, Solver};
 use work_precision::impact::{library, reference};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    if words.is_empty() {
+        words = ["pinned-hertz", "1e-6"].map(str::to_owned).into();
+    }
     let [name, tolerance, rest @ ..] = words.as_slice() else {
         return Err("usage: NAME TOLERANCE [RUNS] [anew]".into());
     };

@@ -1,13 +1,17 @@
 //! Variants of all impacts of the study, since the error of a single impact is small or large by accident.
 //!
-//! Usage: `many_impacts TOLERANCE VARIANTS [errors]`. The instructions of a run are those of its impacts, for callgrind; with
-//! `errors`, each impact is also solved at a tolerance of 1e-12, and the distribution of the differences is printed.
+//! Usage: `many_impacts TOLERANCE VARIANTS [errors]`; the defaults are 1e-6 and 2. The instructions of a run are those of its impacts,
+//! for callgrind; with `errors`, each impact is also solved at a tolerance of 1e-12, and the distribution of the differences is
+//! printed.
 
 use vibroimpact_sim::modal::{Settings, Solver};
 use work_precision::impact::library;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    if words.is_empty() {
+        words = ["1e-6", "2"].map(str::to_owned).into();
+    }
     let [tolerance, variants, rest @ ..] = words.as_slice() else {
         return Err("usage: TOLERANCE VARIANTS [errors]".into());
     };
