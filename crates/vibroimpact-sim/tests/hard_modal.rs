@@ -632,3 +632,23 @@ fn a_contact_within_rounding_gains_no_energy() {
         }
     }
 }
+
+/// Here the law turns the rounding of the rate into a force that is larger than the contact's own. It must not excuse any force.
+#[test]
+fn rounding_excuses_no_force_that_the_motion_cannot_reach() {
+    let structure = Structure {
+        modes: vec![Mode { omega_rad_s: 0.007989514912245288, damping_ratio: 0.0, shape: -4.777495193800294e-20 }],
+    };
+    let striker = Striker { mass_kg: 1.4791034063158794e-24, speed_m_s: 69747149557.20752 };
+    let law = Law::from(Felt::new(7.484774670310755e22, 4.270211796182337, 0.000568053492694768).unwrap());
+    let start =
+        Start { amplitude: vec![209751344255027.72], rate: vec![-2035767348501.8262], gap_m: 325949943.2556024 };
+    let settings = Settings { max_steps: 2_000, ..settings(3.555341190904388e-9) };
+    let found = Solver::new(&structure).unwrap().solve(&striker, &law, Some(&start), &settings).unwrap();
+    let energy = |speed: f64, a: f64, b: f64| {
+        0.5 * (striker.mass_kg * speed * speed + (structure.modes[0].omega_rad_s * a).powi(2) + b * b)
+    };
+    let before = energy(striker.speed_m_s, start.amplitude[0], start.rate[0]);
+    let after = energy(found.striker_velocity_m_s, found.amplitude[0], found.rate[0]);
+    assert!(after <= before * (1.0 + settings.tolerance), "{before:e} J, {after:e} J");
+}

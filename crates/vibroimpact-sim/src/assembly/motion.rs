@@ -23,6 +23,9 @@ pub(super) const GROWTH: f64 = 250.0;
 /// Interpolation of a rate from the overlaps at the nodes magnifies their rounding so many times.
 pub(super) const MAGNIFIED: f64 = 50.0;
 
+/// On a panel an overlap hardly grows by more than this many times what the rate at its start would add.
+const FARTHER: f64 = 10.0;
+
 /// Share of the stated tolerance that is allowed for one panel.
 const STEP_SHARE: f64 = 0.25;
 
@@ -263,13 +266,15 @@ impl<'a> March<'a> {
     }
 
     /// Error of the impulse on a panel of `h` relative to the allowed one, for an error of the force and the overlap and its rate at
-    /// the end. What the rounding of the rate changes in the force of a dashpot is omitted, because no shorter panel reduces it.
+    /// the end. What the rounding of the rate changes in the force of a dashpot is omitted, because no shorter panel reduces it. The
+    /// dashpot is taken no farther than the present rate reaches, so that an absurd end does not excuse itself.
     pub(super) fn error(&self, c: usize, force_n: f64, h: f64, (overlap, rate): (f64, f64)) -> f64 {
         let tolerance = self.impulse_tolerance(c);
         let error = force_n * h / tolerance;
         match self.states[c].touch() {
             Some(touch) if touch.force_by_rate && error * GROWTH >= 1.0 => {
-                let drag = self.law(c).force(&touch.branch, overlap, rate).per_rate_n_s_m.abs();
+                let reached = self.states[c].overlap + FARTHER * h * self.states[c].rate.abs();
+                let drag = self.law(c).force(&touch.branch, overlap.min(reached), rate).per_rate_n_s_m.abs();
                 (force_n * h - MAGNIFIED * drag * self.panel_noise(c, h)).max(0.0) / tolerance
             }
             _ => error,
