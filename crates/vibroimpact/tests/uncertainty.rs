@@ -162,7 +162,8 @@ fn a_tighter_tolerance_at_the_end_of_a_list_does_not_make_the_truncated_modes_kn
     }
 }
 
-/// An undamped beam whose restitution changes as much with every further number of modes: the truth is more than one such change off.
+/// An undamped beam whose restitution changes as much with every further number of modes: the truth may be more than their spread off,
+/// which depends on the last digits of 68 contacts. What is stated is larger, and covers the truth.
 #[test]
 fn changes_that_do_not_decrease_are_stated_with_caution() {
     let segment = json!({ "length_m": 0.94457, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "poissons_ratio": 0.3,
@@ -174,10 +175,8 @@ fn changes_that_do_not_decrease_are_stated_with_caution() {
     let found = answer(&Scene::from_value(&scene).unwrap());
     // with 1000, 1414, 2000 and 2800 modes 0.778, 0.787, 0.805 and 0.813
     let error = (found.restitution.unwrap() - 0.813).abs();
-    assert!(
-        !found.settled && error > found.spread.unwrap() && error <= found.uncertainty.of_model().unwrap(),
-        "{error:e} {found:?}"
-    );
+    let stated = found.uncertainty.of_model().unwrap();
+    assert!(!found.settled && stated > 2.0 * found.spread.unwrap() && error <= stated, "{error:e} {found:?}");
 }
 
 /// After a single contact the restitution changes by 3e-8 with every further number of modes, while only the energy of the
