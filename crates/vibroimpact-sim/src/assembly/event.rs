@@ -77,11 +77,11 @@ impl EventFunction {
                 return verdict;
             }
         }
-        self.from_zero(beginning).verdict()
+        self.quotient(beginning).verdict()
     }
 
     /// Of a function that begins at zero, the quotient that has to stay positive.
-    fn from_zero(&self, beginning: impl FnOnce() -> Beginning) -> Question {
+    fn quotient(&self, beginning: impl FnOnce() -> Beginning) -> Question {
         let [_, rho_slope, rho_bend] = self.rho;
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
