@@ -3,7 +3,8 @@
 //! On a panel the force of each closed contact acts as a polynomial, whose values at the nodes are `T F`. `T` is one unless the force
 //! begins or ends as `t^(3/2)` (`panel/ends.rs`). At each node the law must hold, `F = law(xi, xi')` with
 //! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses. Newton's matrix `1 - F_xi R T - F_rate D R T` has a block for
-//! each pair of contacts, which is zero if they share no body. The iteration ends when the remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
+//! each pair of contacts, which is zero if they share no body. The iteration ends when the remaining correction changes the impulse
+//! of no contact by more than a hundredth of the error allowed for a panel.
 //!
 //! The rate `D xi` is computed only if a boundary of the branch or the force depends on it. The force does not depend on the
 //! rate if the law returns a force whose derivative with respect to the rate is zero at all nodes.

@@ -96,8 +96,8 @@ pub(crate) fn of_panel(
                         #[inline(always)]
                         |[psi, a, b, partner, inverse, value, slope, bend]| {
                             let yields = partner * inverse * inverse;
-                            let size = psi.abs() * ((a + yields * force).abs() + (b + yields * growth).abs() * inverse);
-                            [size * value, size * slope, size * bend]
+                            let vibrates = [a + yields * force, b + yields * growth];
+                            missed_by(psi, vibrates, inverse, [value, slope, bend])
                         },
                     )
                 },
@@ -112,8 +112,7 @@ pub(crate) fn of_panel(
                         rows,
                         #[inline(always)]
                         |[psi, a, b, at, rate, inverse, value, slope, bend]| {
-                            let size = psi.abs() * ((a - at).abs() + (b - rate).abs() * inverse);
-                            [size * value, size * slope, size * bend]
+                            missed_by(psi, [a - at, b - rate], inverse, [value, slope, bend])
                         },
                     )
                 },
@@ -138,6 +137,13 @@ pub(crate) fn of_panel(
         add(&mut rho, harmonic.contacts[contact].norm(), harmonic.omega_rad_s * h);
     }
     rho
+}
+
+/// What interpolation misses of a mode that vibrates with this amplitude and rate.
+#[inline(always)]
+fn missed_by(psi: f64, [a, b]: [f64; 2], inverse: f64, [value, slope, bend]: [f64; ORDERS]) -> [f64; ORDERS] {
+    let size = psi.abs() * (a.abs() + b.abs() * inverse);
+    [size * value, size * slope, size * bend]
 }
 
 /// Adds the bound for a vibration of this amplitude that turns by `theta`.

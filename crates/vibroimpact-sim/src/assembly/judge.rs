@@ -8,7 +8,7 @@ use super::interpolation::ORDERS;
 use super::motion::{MAGNIFIED, March, Target};
 use super::state::Touch;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, TAYLOR};
+use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
 const TAIL: f64 = 10.0;
@@ -34,7 +34,7 @@ impl<'a> March<'a> {
         h: f64,
         contacts: &[usize],
         closed: usize,
-        solved: &[Collocated],
+        (solved, force): (&[Collocated], &[Legendre]),
         overlap: &[Nodal],
         enclosed: bool,
     ) -> Judgement {
@@ -59,7 +59,7 @@ impl<'a> March<'a> {
                     (&pulls, &mut self.held),
                 );
             }
-            let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| last_coefficient(&solved[i].acting));
+            let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| force[i].0[Q - 1].abs());
             let noise = self.panel_noise(c, h);
             let mut acceleration = None;
             let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
@@ -83,7 +83,7 @@ impl<'a> March<'a> {
                     Beginning {
                         slope: (per.0 * state.rate + per.1 * acceleration) * h,
                         bend: (per.1 == 0.0).then_some(per.0 * acceleration * h * h),
-                        unresolved: (per_overlap + per_rate) * h * h * self.unresolved(c, &contacts[..closed], solved),
+                        unresolved: (per_overlap + per_rate) * h * h * self.unresolved(c, &contacts[..closed], force),
                     }
                 };
                 match function.verdict(beginning) {
@@ -149,8 +149,8 @@ impl<'a> March<'a> {
     }
 
     /// Uncertainty of the acceleration of the overlap of a contact by the truncation of the closed contacts' forces (m/s^2).
-    fn unresolved(&self, c: usize, closed: &[usize], solved: &[Collocated]) -> f64 {
-        self.moved_by(c, closed, |i| TAIL * Legendre::through(&solved[i].acting).truncation())
+    fn unresolved(&self, c: usize, closed: &[usize], force: &[Legendre]) -> f64 {
+        self.moved_by(c, closed, |i| TAIL * force[i].truncation())
     }
 
     /// Bound on the acceleration of the overlap of a contact (m/s^2) by forces of this size in the closed contacts.
@@ -174,15 +174,10 @@ impl<'a> March<'a> {
     }
 }
 
-/// Size of the last coefficient of the polynomial with these values at the nodes.
-fn last_coefficient(nodal: &Nodal) -> f64 {
-    BASIS.to_coefficients.iter().zip(nodal).map(|(column, value)| column[Q - 1] * value).sum::<f64>().abs()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::legendre::slopes;
+    use crate::panel::legendre::{BASIS, slopes};
 
     /// The overlap under the last Legendre polynomial as the acceleration, integrated twice by the differential equation of these
     /// polynomials, is `s^2 (1 - s)^2` times the slope of the slope of `P_7`, over `7 8 (7 8 - 2)`.

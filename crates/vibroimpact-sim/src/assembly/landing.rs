@@ -34,7 +34,7 @@ impl<'a> March<'a> {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
         self.watch_window(&mut window, &mut landed);
-        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
+        match self.judge_landed(&window, &landed) {
             Judgement::Meets(target, place) => self.head_for(target, place, length),
             _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
             _ => self.commit_landed(&window, &landed),
@@ -107,7 +107,7 @@ impl<'a> March<'a> {
         self.watch_window(&mut window, &mut landed);
         let length = landed.length;
         // this panel may have passed over an earlier zero of the same event function, or over another event
-        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
+        match self.judge_landed(&window, &landed) {
             Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
                 self.head_for(other, place, length);
                 // a closer guess avoids finding the same end again
@@ -271,6 +271,12 @@ impl<'a> March<'a> {
         }
     }
 
+    /// Tests the event functions of a terminal panel, whose series need no enclosure.
+    fn judge_landed(&mut self, window: &Window, landed: &Landed) -> Judgement {
+        let forces = (landed.solved.as_slice(), landed.force.as_slice());
+        self.judge(landed.length, &window.contacts, window.closed, forces, &landed.overlap, false)
+    }
+
     /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
         let of = |(i, solved): (usize, &Collocated)| {
@@ -285,9 +291,8 @@ impl<'a> March<'a> {
         self.show(landed.length, &contacts[..closed], &landed.force, &landed.solved);
         if self.wants_contact_work() {
             for (i, &c) in contacts[..closed].iter().enumerate() {
-                let start = self.states[c].overlap;
-                let moved = landed.overlap[i].map(|at| at - start);
-                self.add_contact_work(&landed.force[i], &moved, landed.end[i][0] - start);
+                let (overlap, end) = (&landed.overlap[i], landed.end[i][0]);
+                self.contact_work_j += self.states[c].work_j(&landed.force[i], overlap, end);
             }
         }
         window.advance(self.system, landed, &mut self.amplitude, &mut self.rate);

@@ -111,8 +111,9 @@ impl State {
     /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
     /// compression and rate at the nodes, and its compression at the end.
     pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, end: f64) {
-        let Phase::Closed(touch) = &mut self.phase else { return };
         let Collocated { force: nodal, ends, compression, force_by_rate, .. } = solved;
+        let work_j = self.work_j(&force, compression, end);
+        let Phase::Closed(touch) = &mut self.phase else { return };
         touch.force_by_rate = *force_by_rate;
         touch.begins = false;
         touch.previous = Some((force, h));
@@ -128,8 +129,13 @@ impl State {
             statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];
             statistics.compression_work_j += weight * power.max(0.0);
         }
-        let moved = compression.map(|at| at - self.overlap);
-        statistics.work_j += dot(&force.0, &work_of_unit_forces(&moved, end - self.overlap));
+        statistics.work_j += work_j;
+    }
+
+    /// Work on the contact on a panel by quadrature (J), with its overlap at the nodes and at the end.
+    pub fn work_j(&self, force: &Legendre, overlap: &Nodal, end: f64) -> f64 {
+        let moved = overlap.map(|at| at - self.overlap);
+        dot(&force.0, &work_of_unit_forces(&moved, end - self.overlap))
     }
 
     /// Begins the statistics anew, with the rest of an interval of contact.

@@ -7,7 +7,7 @@ use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
 use crate::panel::ends::Ends;
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, dot, slopes, work_of_unit_forces};
+use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, slopes};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 pub(super) const NEWTON_SHARE: f64 = 1e-2;
@@ -153,8 +153,8 @@ impl<'a> March<'a> {
         }
         let closed = &trial.contacts[..trial.closed];
         for (i, &c) in closed.iter().enumerate() {
-            let moved = trial.solved[i].compression.map(|compression| compression - self.states[c].overlap);
-            self.add_contact_work(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
+            let (compression, end) = (&trial.solved[i].compression, trial.end[i].0);
+            self.contact_work_j += self.states[c].work_j(&trial.force[i], compression, end);
         }
         if self.account.is_none() {
             return;
@@ -170,12 +170,6 @@ impl<'a> March<'a> {
     /// Whether the balance or the whole motion is requested.
     pub(super) fn wants_contact_work(&self) -> bool {
         self.account.is_some() || self.record.is_some()
-    }
-
-    /// Adds the work on a contact on a panel by quadrature; `moved` is the increase of its overlap up to the nodes, and up to the
-    /// end.
-    pub(super) fn add_contact_work(&mut self, force: &Legendre, moved: &Nodal, moved_at_end: f64) {
-        self.contact_work_j += dot(&force.0, &work_of_unit_forces(moved, moved_at_end));
     }
 
     /// Accepts a panel of `h`.
