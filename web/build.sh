@@ -4,8 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 cargo fetch --locked --target wasm32-unknown-unknown
-# messages of panics name source files, but not the folders of the machine that built the page
-# (separated by the character that cargo expects, since folders may have spaces)
+# The messages of panics name source files. They must not name the folders of the machine that builds the page. Folders may have
+# spaces, so the flags are separated by the character that cargo expects between encoded flags.
 flags="--remap-path-prefix=$(cd .. && pwd)/="
 for sources in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/; do
     flags+=$'\x1f'"--remap-path-prefix=$sources="
