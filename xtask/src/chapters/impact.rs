@@ -46,7 +46,7 @@ pub(super) struct Setup<'a> {
 }
 
 /// Tolerance of the restitutions of the chapters.
-pub(super) const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 impl Setup<'_> {
     fn structure(&self) -> Result<Structure, Failure> {

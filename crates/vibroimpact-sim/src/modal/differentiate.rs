@@ -1,7 +1,7 @@
 //! Derivatives of an impact with respect to the numbers that define it.
 
 use super::posed;
-use super::problem::{Mode, Settings, Start, Striker, Structure};
+use super::problem::{Mode, Settings, Start, Striker, Structure, moved};
 use super::solution::{Outcome, Solution};
 use super::solve::{COARSER, Impact, Run, SECOND, Solved, Solver};
 use super::time_unit::{Law, Unit};
@@ -178,7 +178,7 @@ impl Solver {
                 neighbour.check()?;
             }
         }
-        let moved = self.moved_by(parameters);
+        let moved = self.moved_by(parameters, start);
         let other = (moved != self.moved()).then(|| self.moving(moved));
         let at_rest = Start::at_rest(count);
         let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
@@ -263,13 +263,16 @@ impl Solver {
         Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches.map(|speed| speed * unit.0)))
     }
 
-    /// The modes that move the contact, at the value itself or at a neighbour.
-    fn moved_by(&self, parameters: &[Parameter]) -> Vec<usize> {
-        let structures = || parameters.iter().flat_map(|parameter| &parameter.neighbours);
-        let moves = |k: &usize| {
-            self.modes()[*k].is_excited() || structures().any(|posing| posing.structure.modes[*k].is_excited())
-        };
-        (0..self.modes().len()).filter(moves).collect()
+    /// The modes that the contact excites, or that move it before the impact, at the value itself or at a neighbour.
+    fn moved_by(&self, parameters: &[Parameter], start: Option<&Start>) -> Vec<usize> {
+        let neighbours = parameters.iter().flat_map(|parameter| &parameter.neighbours);
+        let mut all = moved(self.modes(), start);
+        for Posing { structure, start, .. } in neighbours {
+            all.extend(moved(&structure.modes, Some(start)));
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 }
 

@@ -6,7 +6,7 @@
 //! ```text
 //! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = -phi_k F        k = 1 .. N        (thesis 3.7, 3.10)
 //! m z'' = F                                                                         (thesis 3.8)
-//! xi = sum phi_k a_k - z - c F,      F = law(xi, xi')                               (thesis 3.11)
+//! xi = sum phi_k a_k - z,      F = law(xi, xi')                                     (thesis 3.11)
 //! ```
 //!
 //! | symbol | meaning | unit |
@@ -21,11 +21,12 @@
 //! mode, and one contact (`posed.rs`). The modes are propagated exactly. The only unknown is the force, a polynomial on each
 //! panel. A bound on the motion gives a time before which no contact can occur, and the impact ends when none can occur any
 //! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws, and threads share them.
+//! A mode that the contact does not excite, at its node, is left out unless it moves before the impact.
 //!
 //! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each is
 //! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). The restitutions
 //! are compared, and also those that would result if the impact ended in each flight between two contacts: two solutions may agree
-//! in one number by accident, but hardly in all. The uncertainty is two and a half times the largest difference. If that difference
+//! in one number by accident, but hardly in all. The uncertainty is three times the largest difference. If that difference
 //! exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and more); if the numbers of contacts
 //! differ, it is close to a graze, where errors do not grow in proportion. A further solution, with 8 times the tolerance in the
 //! first unit, is then computed, and its difference counts twice.

@@ -9,8 +9,11 @@ use invalid_input::InvalidInput;
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// The least mass (kg), the reciprocal of the largest: wide enough for any unit system, narrow enough that no product overflows.
 const SCALE_MIN: f64 = 1e-30;
-/// A mode that moves less than this (kg^-1/2) at the contact is not excited by it.
+/// A mode that moves less than this (kg^-1/2) at the contact is not moved by it.
 const SHAPE_FLOOR: f64 = 1e-30;
+/// A mode is not excited whose share of every response at the contact is less than this. Shapes at their nodes have such shares,
+/// from rounding.
+const UNEXCITED: f64 = 1e-24;
 
 /// One mode of the structure, as seen from the point of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,9 +38,30 @@ impl Mode {
     }
 
     /// Whether a force at the contact moves the mode at all.
-    pub(crate) fn is_excited(&self) -> bool {
+    pub(crate) fn is_moved(&self) -> bool {
         self.shape.abs() > SHAPE_FLOOR
     }
+
+    /// Speed and displacement of the contact after a unit impulse, and its displacement under a unit force, each at most.
+    fn responses(&self) -> [f64; 3] {
+        let square = self.shape * self.shape;
+        [square, square / self.omega_rad_s, square / self.omega_rad_s / self.omega_rad_s]
+    }
+}
+
+/// Indices of the modes that move the contact: those that it excites, and those that move it before the impact.
+pub(crate) fn moved(modes: &[Mode], start: Option<&Start>) -> Vec<usize> {
+    let mut total = [0.0; 3];
+    for mode in modes.iter().filter(|mode| mode.is_moved() && !mode.is_rigid()) {
+        total.iter_mut().zip(mode.responses()).for_each(|(total, response)| *total += response);
+    }
+    let excited = |mode: &Mode| mode.responses().iter().zip(total).any(|(response, all)| *response >= UNEXCITED * all);
+    let moves = |k: usize| {
+        let of = |values: &[f64]| values.get(k).is_some_and(|value| *value != 0.0);
+        start.is_some_and(|start| of(&start.amplitude) || of(&start.rate))
+    };
+    let counts = |k: usize, mode: &Mode| mode.is_moved() && (mode.is_rigid() || excited(mode) || moves(k));
+    modes.iter().enumerate().filter(|(k, mode)| counts(*k, mode)).map(|(k, _)| k).collect()
 }
 
 /// A linear structure, as seen from the contact. Truncated modes are best represented by remainder modes

@@ -2,7 +2,7 @@
 
 use super::history::{History, all_modes};
 use super::posed;
-use super::problem::{Mode, Settings, Start, Striker, Structure};
+use super::problem::{Mode, Settings, Start, Striker, Structure, moved};
 use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
@@ -56,12 +56,14 @@ const LEAST: f64 = 2.5e-3;
 /// ```
 pub struct Solver {
     modes: Vec<Mode>,
-    /// Indices of the modes that move the contact.
+    /// Indices of the modes that are solved for: those that the contact excites. The others move freely.
     moved: Vec<usize>,
     /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
     tables: [OnceLock<Arc<Tables>>; 2],
     /// The same structure in the other units of time, once they were needed.
     others: [OnceLock<Box<Solver>>; 2],
+    /// The same structure with every mode that moves the contact at all, for motion before the impact.
+    whole: OnceLock<Box<Solver>>,
 }
 
 /// An impact to be solved.
@@ -138,7 +140,7 @@ impl Solver {
     /// Names the field, its value and what would be allowed.
     pub fn new(structure: &Structure) -> Result<Solver, InvalidInput> {
         structure.check()?;
-        Ok(Solver::unchecked(structure.modes.clone()))
+        Ok(Solver::of(structure.modes.clone(), moved(&structure.modes, None)))
     }
 
     /// Turns to another location of the same structure, or to a structure of other modes. Tables that do not depend on the
@@ -148,17 +150,16 @@ impl Solver {
     /// As [`Solver::new`].
     pub fn turn_to(&mut self, structure: &Structure) -> Result<(), InvalidInput> {
         structure.check()?;
-        self.turn_to_modes(structure.modes.clone());
+        self.turn_to_modes(structure.modes.clone(), moved(&structure.modes, None));
         Ok(())
     }
 
-    fn turn_to_modes(&mut self, modes: Vec<Mode>) {
+    fn turn_to_modes(&mut self, modes: Vec<Mode>, moved: Vec<usize>) {
         for (other, (unit, _)) in self.others.iter_mut().zip(COARSER) {
             if let Some(other) = other.get_mut() {
-                other.turn_to_modes(unit.modes(&modes));
+                other.turn_to_modes(unit.modes(&modes), moved.clone());
             }
         }
-        let moved = moved(&modes);
         let same = moved.len() == self.moved.len()
             && moved.iter().zip(&self.moved).all(|(new, old)| modes[*new].of_body() == self.modes[*old].of_body());
         if same {
@@ -172,11 +173,11 @@ impl Solver {
         } else {
             self.tables = Default::default();
         }
-        (self.modes, self.moved) = (modes, moved);
+        (self.modes, self.moved, self.whole) = (modes, moved, OnceLock::new());
     }
 
-    fn unchecked(modes: Vec<Mode>) -> Solver {
-        Solver { moved: moved(&modes), modes, tables: Default::default(), others: Default::default() }
+    fn of(modes: Vec<Mode>, moved: Vec<usize>) -> Solver {
+        Solver { moved, modes, tables: Default::default(), others: Default::default(), whole: OnceLock::new() }
     }
 
     /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
@@ -190,7 +191,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
-        Ok(self.solve_into(striker, law, start, settings, Keep::Result)?.solution)
+        Ok(self.starting(start).solve_into(striker, law, start, settings, Keep::Result)?.solution)
     }
 
     /// Solves one impact and keeps its motion.
@@ -204,18 +205,19 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Recording, InvalidInput> {
+        let solver = self.starting(start);
         let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
         let Solved { solution, run, system, work_and_damping_j, .. } =
-            self.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
+            solver.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
         Ok(Recording {
             solution,
             counts: run.counts,
-            modes: self.modes.clone(),
-            moved: self.moved.clone(),
+            modes: solver.modes.clone(),
+            moved: solver.moved.clone(),
             striker: *striker,
             start,
             record: run.record,
-            tables: Arc::clone(self.tables(&system)),
+            tables: Arc::clone(solver.tables(&system)),
             work_and_damping_j,
             system,
         })
@@ -330,7 +332,7 @@ impl Solver {
 
     /// The same structure in one of the other units of time.
     pub(crate) fn other(&self, which: usize) -> &Solver {
-        let of = |unit: Unit| Solver { moved: self.moved.clone(), ..Solver::unchecked(unit.modes(&self.modes)) };
+        let of = |unit: Unit| Solver::of(unit.modes(&self.modes), self.moved.clone());
         self.others[which].get_or_init(|| Box::new(of(COARSER[which].0)))
     }
 
@@ -366,13 +368,22 @@ impl Solver {
         self.tables[usize::from(system.bodies.len() == 1)].get_or_init(|| Arc::new(Tables::new(system)))
     }
 
+    /// The solver for this motion before the impact: by it, modes can move the contact that the contact does not excite.
+    fn starting(&self, start: Option<&Start>) -> &Solver {
+        if start.is_none() || moved(&self.modes, start) == self.moved {
+            return self;
+        }
+        let all = || (0..self.modes.len()).filter(|k| self.modes[*k].is_moved()).collect();
+        self.whole.get_or_init(|| Box::new(self.moving(all())))
+    }
+
     pub(crate) fn modes(&self) -> &[Mode] {
         &self.modes
     }
 
     /// The same structure, in which these modes are moved by the contact.
     pub(crate) fn moving(&self, moved: Vec<usize>) -> Solver {
-        Solver { moved, ..Solver::unchecked(self.modes.clone()) }
+        Solver::of(self.modes.clone(), moved)
     }
 
     pub(crate) fn moved(&self) -> &[usize] {
@@ -434,7 +445,7 @@ impl Solver {
     fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
         let before = self.approach(striker, start);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
-        let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_excited());
+        let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_moved());
         let ratio = (run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k])) / before;
         // the ratio to an approach of 1e-310 m/s overflows on a structure that moves
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
@@ -489,11 +500,6 @@ impl Restitutions {
             None => Some(-1.0),
         }
     }
-}
-
-/// Indices of the modes that move the contact.
-fn moved(modes: &[Mode]) -> Vec<usize> {
-    (0..modes.len()).filter(|&k| modes[k].is_excited()).collect()
 }
 
 fn stop_reason(reason: assembly::Reason, closed: bool) -> StopReason {

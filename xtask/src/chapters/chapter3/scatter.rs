@@ -1,7 +1,7 @@
 //! Statements of chapter 3 on the scatter of the restitution over the numbers of modes, and measures of that scatter.
 
 use crate::chapters::figures::Curve;
-use crate::chapters::impact::{Row, TOLERANCE};
+use crate::chapters::impact::Row;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 
@@ -163,8 +163,8 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
     if unequal.is_finite() {
         study.state(Statement::identity(
             "largest |e(N) − e(N+1)| for N = 4, 9, 14, …, b = 0.4",
-            ["3.3.2", "identical", "the tolerance of the restitutions; the mode is not excited"],
-            (0.0, TOLERANCE),
+            ["3.3.2", "identical", "rounding; the mode is not excited"],
+            (0.0, 1e-15),
             unequal,
         ));
     }
