@@ -128,8 +128,7 @@ proptest! {
         // If the structure moves away faster than the striker, they never touch again, in either direction of time.
         prop_assume!(away > 0.0);
         // The way back amplifies errors of the whole state, which no stated uncertainty covers. The uncertainty of the round
-        // trip is estimated as in the solver: from 32 and 8 times the tolerance, and five times the difference if it is
-        // amplified.
+        // trip is estimated from 32 and 8 times the tolerance, and five times the difference if it is amplified.
         let spread = [3.2e-11, 8e-12].map(|tolerance| (round_trip(tolerance).3 - returned).abs());
         let spread = spread[0].max(spread[1]);
         let times = if spread > 1e-12 * striker.speed_m_s { 5.0 } else { 2.5 };

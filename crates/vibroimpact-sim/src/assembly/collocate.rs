@@ -7,7 +7,7 @@
 //! of no contact by more than a hundredth of the error allowed for a panel.
 //!
 //! The rate `D xi` is computed only if a boundary of the branch or the force depends on it. The force does not depend on the
-//! rate if the law returns a force whose derivative with respect to the rate is zero at all nodes.
+//! rate if the law returns a force that is not zero at all nodes, and whose derivative with respect to the rate is.
 
 use super::solution::Counts;
 use crate::panel::ends::Ends;

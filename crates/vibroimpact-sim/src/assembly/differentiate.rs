@@ -37,8 +37,8 @@ pub struct Parameter<'a, L> {
 pub struct Derivative {
     /// The derivative.
     pub value: f64,
-    /// Its uncertainty, from the derivative along a coarser solution. `None` if that solution has another sequence of contacts, so
-    /// that no digit of the derivative is certain.
+    /// Its uncertainty, from the derivative along a coarser solution. `None` if that solution has another sequence of contacts (for an
+    /// interval of contact: no such interval), so that no digit of the derivative is certain.
     pub uncertainty: Option<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! Event location: where on a panel an event function first falls to zero. No other file decides this.
+//! Event location: where on a panel with closed contacts an event function first falls to zero. No other file decides this; in
+//! flight `enclosure.rs` finds the first closing.
 //!
 //! An event function `m` is positive inside a branch. It is the distance to a boundary of the law, or between two separated
 //! surfaces. On a panel it is represented by the polynomial through the start and the nodes, with an error of at most `rho`
@@ -17,7 +18,8 @@
 //! `e`, which leaves the second derivative of the overlap uncertain by `sum_c' W_cc' e_c'`, where `W` is the inverse mass of an
 //! impulse of `c'` at the contact. A shorter panel does not help, because the relative truncation error of a force that begins like
 //! a power of time is the same on every panel. This uncertainty is treated like rounding: an event function within it counts as
-//! zero. The force that the contact may have meanwhile is smaller than these errors by its stiffness times the square of the panel.
+//! zero. The force that the contact may have meanwhile is smaller than these errors by the square of the panel times the frequency
+//! of the contact.
 
 use crate::panel::legendre::{BASIS, Nodal, Q};
 use std::sync::LazyLock;

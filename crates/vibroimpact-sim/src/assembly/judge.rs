@@ -14,9 +14,9 @@ use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
 const TAIL: f64 = 10.0;
 
 /// Under the last Legendre polynomial as the acceleration an overlap is of the ninth degree. The polynomial through start and nodes
-/// then misses `s P_8(2s - 1)/270` (panel length 1), and the rates at the nodes its slope. These are bounds on that, on its slope, and
-/// on what the slope does to the quotient of an event function that depends on the rate. Other quotients are of at most the eighth
-/// degree.
+/// then misses `s P_8(2s - 1)/270` (panel length 1), and the rates at the nodes its slope there, `s P_8'(2s - 1)/135`. These are bounds
+/// on both, and on what the second does to the quotient of an event function that depends on the rate. Other quotients are of at most
+/// the eighth degree.
 const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 
 /// Result of testing the event functions of a panel.

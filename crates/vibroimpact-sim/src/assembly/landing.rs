@@ -1,4 +1,5 @@
-//! Terminal panels, whose length is unknown. They end at an event, a break of the loads or the end of the run.
+//! Terminal panels, whose length is unknown. They end at an event, a break of the loads, the start of the
+//! statistics or the end of the run.
 
 use super::collocate::{Collocated, Unknown};
 use super::judge::Judgement;

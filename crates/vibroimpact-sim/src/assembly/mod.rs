@@ -22,18 +22,19 @@
 //! # The method
 //! The modes are linear and uncoupled, and are propagated exactly on panels of `2^-j` s whose tables are cached
 //! (`tables.rs`). Modes are computed relative to their steady motion under the loads, so that loads cost nothing on a panel
-//! (`load.rs`). The only unknowns are the forces of closed contacts, polynomials through Gauss nodes whose values the laws
-//! determine. Newton's method finds them, with a matrix that has a block for every two contacts on one body
-//! (`collocate.rs`).
+//! (`load.rs`). The only unknowns are the forces of closed contacts: polynomials through Gauss nodes, times `t^(3/2)` where they
+//! begin or end so (`panel/ends.rs`), whose values the laws determine. Newton's method finds them, with a matrix that has a block
+//! for every two contacts on one body (`collocate.rs`).
 //!
 //! Time integration (`march.rs`) computes a panel and checks it. The panel is accepted, tried again with a shorter length, or
 //! ended at an event. Three rules hold for every accepted panel:
 //!
 //! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a quarter of the tolerance
-//!    in impulse;
+//!    in impulse (on a terminal panel the truncation alone);
 //! 2. no event function falls to zero on it. An event function is the distance to a boundary of a law's branch, or of
-//!    the separation of an open contact. It is represented by a polynomial with an error bound (`enclosure.rs`), and only
-//!    `event.rs` tests it; a panel on which it comes within the bound of zero is too long;
+//!    the separation of an open contact. It is represented by a polynomial with an error bound (`enclosure.rs`), and on a
+//!    panel with closed contacts only `event.rs` tests it. A panel of `2^-j` s on which it comes within the bound of zero
+//!    is too long; on a terminal panel the series are exact to rounding;
 //! 3. it lies in one branch of every law. An event is the end of a terminal panel (`terminal.rs`), whose length is the
 //!    root of the event function; one law transition follows.
 //!

@@ -32,7 +32,8 @@
 //! f     = law(x, x'),        kappa(t) = sum_k c_k t^(p_k),   0 <= p_k < 1,              (3)
 //! ```
 //!
-//! where `kappa(0)` is the sum of the `c_k` with `p_k = 0`, and `kappa'` is singular at zero but integrable.
+//! where `kappa(0)` is the sum of the `c_k` with `p_k = 0`, and `kappa'` is singular at zero but integrable. [`Receptance`] admits
+//! one to eight terms, with powers of 0 or 0.1 to 0.9.
 //!
 //! # Method
 //!
@@ -47,8 +48,9 @@
 //! on the panel, which is searched for its first zero and for minima between samples (`event.rs`). The panel that ends there is found
 //! by Newton's method. The contact goes on with the branch that the law returns, with a panel that is again smooth in `sqrt(t)`.
 //!
-//! *Past*: recent panels by closed-form integrals of Legendre polynomials against `sqrt(z - u)` (`root_sum.rs`), others as Gauss rules
-//! of the positive measure `f ds`, by age (`history.rs`, `past.rs`), on a time origin that moves along (`contact.rs`).
+//! *Past*: of the recent panels those between start and end by closed-form integrals of Legendre polynomials against `sqrt(z - u)`,
+//! where the square root is the whole after-effect (`root_sum.rs`), and the others by Gauss rules in pieces (`past.rs`). Older ones are
+//! Gauss rules of the positive measure `f ds`, by age (`history.rs`), on a time origin that moves along (`contact.rs`).
 //!
 //! *Flight*: closed form; the gap is convex, so there is at most one next contact, and Newton's method finds it (`flight.rs`).
 //!

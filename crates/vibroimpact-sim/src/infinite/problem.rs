@@ -24,8 +24,8 @@ invalid_input::names!(Structure, "structure", { Beam: "beam", Plate: "plate" });
 pub struct Settings {
     /// Collocation nodes per panel, 8 to 32. Default 20.
     pub nodes: usize,
-    /// Largest relative size of the last Legendre coefficients of the force in a panel, 1e-14 to
-    /// 1e-3. Default 1e-10.
+    /// Largest impulse of the last two Legendre coefficients of the force on a panel, relative to those of the panels
+    /// before, 1e-14 to 1e-3. Default 1e-10.
     pub tolerance: f64,
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
     /// it takes to know that it lasts.

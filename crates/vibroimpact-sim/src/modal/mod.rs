@@ -17,16 +17,18 @@
 //! | `xi`, `F` | compression and force of the contact | m, N |
 //!
 //! # The method
-//! An impact is the smallest assembly ([`crate::assembly`] describes the method): two bodies, of which the striker is one rigid
-//! mode, and one contact (`posed.rs`). The modes are propagated exactly. The only unknown is the force, a polynomial on each
-//! panel. A bound on the motion gives a time before which no contact can occur, and the impact ends when none can occur any
-//! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws, and threads share them.
-//! A mode that the contact does not excite, at its node, is left out unless it moves before the impact.
+//! An impact is the smallest assembly ([`crate::assembly`] describes the method): two bodies, of which the striker is
+//! one rigid mode, and one contact (`posed.rs`). The modes are propagated exactly. The only unknown is the force: on each panel a
+//! polynomial, times `t^(3/2)` where it begins or ends so. A bound on the motion gives a time before which no contact can occur,
+//! and the impact ends when none can occur any more. The tables that depend on the structure alone are cached for further strikers,
+//! speeds and laws, and threads share them. A mode that the contact does not excite, at its node, is left out unless it moves
+//! before the impact.
 //!
 //! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each is
 //! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). The restitutions
 //! are compared, and also those that would result if the impact ended in each flight between two contacts: two solutions may agree
-//! in one number by accident, but hardly in all. The uncertainty is three times the largest difference. If that difference
+//! in one number by accident, but hardly in all. The uncertainty is three times the largest difference, and 0.0025 of the
+//! tolerance more for each contact. If that difference
 //! exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and more); if the numbers of contacts
 //! differ, it is close to a graze, where errors do not grow in proportion. A further solution, with 8 times the tolerance in the
 //! first unit, is then computed, and its difference counts twice.

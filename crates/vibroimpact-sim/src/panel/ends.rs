@@ -1,10 +1,10 @@
 //! Forces that begin or end on a panel as `t^(3/2)`, as Hertz's law has them.
 //!
-//! A polynomial of degree `Q - 1` through the nodes represents `s^(3/2)` to 1e-4 only, however short the panel is. So such a force is
-//! written `F(s) = w(s) P(s)`, `w = s^(3/2)` where it begins and `(1-s)^(3/2)` where it ends, with a polynomial `P` through the nodes.
-//! The modes are moved by the polynomial of degree `Q - 1` that is closest to `F` in the mean square: what is left out has no moments
-//! below degree `Q`, so that a mode that turns little on the panel hardly feels it. That polynomial is linear in the nodal values of
-//! `F`, a constant matrix, and everything that acts on polynomials serves for it.
+//! A polynomial of degree `Q - 1` through the nodes represents `s^(3/2)` to 1e-4 in the mean square only, however short the panel
+//! is. So such a force is written `F(s) = w(s) P(s)`, `w = s^(3/2)` where it begins and `(1-s)^(3/2)` where it ends, with a
+//! polynomial `P` through the nodes. The modes are moved by the polynomial of degree `Q - 1` that is closest to `F` in the mean
+//! square: what is left out has no moments below degree `Q`, so that a mode that turns little on the panel hardly feels it. That
+//! polynomial is linear in the nodal values of `F`, a constant matrix, and everything that acts on polynomials serves for it.
 
 use super::legendre::{BASIS, Legendre, Matrix, Nodal, Q, apply, legendre};
 use gauss_quad::legendre::GaussLegendre;

@@ -9,8 +9,9 @@
 //! J(omega) = Gamma(n + 1) F_1/omega,      F_1 = F(v/omega, v),
 //! ```
 //!
-//! where `F(xi, xi')` is the law of contact and `v` the speed of impact. `J` is at most what the striker gives up to a mode of the
-//! mass `1/(1/m + A)`, where `A = (2g - 1) c_N omega_N^2` is the inverse mass of the modes up to `N` at the location. It follows from
+//! where `F(xi, xi')` is the law of contact and `v` the speed of impact. `J` is at most `2 v0/(1/m + A)`, what the striker
+//! gives up in an elastic impact on a free mass `1/A`, where `A = (2g - 1) c_N omega_N^2` is the inverse mass of the modes up to `N` at
+//! the location. It follows from
 //! the compliance `c_N` of the truncated modes if shapes have the same mean square and frequencies grow as the power `g` of their
 //! number. The share of the striker's energy that the truncated modes have received is then, with the speed of impact `v0`,
 //!

@@ -32,7 +32,7 @@ const LOOSE: f64 = 3e-3;
 const CAUTION: f64 = 3.0;
 const LEAST_SHARE: f64 = 0.25;
 /// The solver's tolerance in the comparison, and the factor of the number of modes at which it costs as much as the impact itself,
-/// which is solved twice and far more accurately.
+/// which is solved three times and far more accurately.
 const SOLVER: f64 = 1e-6;
 const RICHER: usize = 2;
 
