@@ -501,7 +501,7 @@ class Hysteretic(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LinearSpring(Part):
-    """.
+    """A linear spring.
 
     ``stiffness_n_m``: Stiffness (N/m).
     """
@@ -559,7 +559,7 @@ class KelvinVoigt(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HuntCrossley(Part):
-    """.
+    """A power of the compression with damping in proportion to it.
 
     ``damping_s_m``: Damping factor (s/m), or ``restitution`` in its place.
     ``exponent``: Exponent ``n`` of the compression.
@@ -591,7 +591,7 @@ class HuntCrossley(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LankaraniNikravesh(Part):
-    """.
+    """Hertz contact damped for a restitution near one.
 
     ``restitution``: Restitution that the damping is meant to give.
     ``lowest_approach_speed_m_s``: Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
@@ -619,7 +619,7 @@ class LankaraniNikravesh(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Flores(Part):
-    """.
+    """Hertz contact damped for any restitution.
 
     ``restitution``: Restitution that the damping is meant to give.
     ``lowest_approach_speed_m_s``: Approach speed below which the damping grows no further (m/s); 1e-6 when left out.

@@ -5,8 +5,7 @@
 //! | numbers are finite everywhere | an iteration may step beyond a branch |
 //! | no tension within a branch | surfaces separate where the law says so, and nowhere else |
 //! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
-//! | the force depends on the rate on all of a branch, as stated by `per_rate_n_s_m`, or nowhere on it | the rate is computed
-//! only where it matters |
+//! | the force depends on the rate on all of a branch, as stated by `per_rate_n_s_m`, or nowhere | the rate is computed only where it matters |
 //! | the boundaries of a branch are finite in number | all of them are watched |
 //! | the force is continuous from branch to branch, and zero at a release | events have no impulse |
 //! | a branch is valid where it begins, and few follow each other between two instants | time advances |

@@ -139,7 +139,7 @@ pub trait ContactLaw: Send + Sync {
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After;
 }
 
-/// Larger than the number of boundaries of any branch; a law with more would have no last boundary.
+/// The largest number of boundaries of a branch; a law with more would have no last boundary.
 pub const MOST_BOUNDARIES: usize = 256;
 
 /// All boundaries of a branch, in the order of their numbers, up to [`MOST_BOUNDARIES`].

@@ -72,7 +72,7 @@
 //!   vibrates already, friction; `Solver::least_energy` is Todorov's rule (5.3). `SingleImpact`: P_1 and its
 //!   reduced form as quadratic programs.
 //!
-//! Without features the crate has no dependency and needs neither `std` nor an allocator. `qp` (default) adds `alloc`, `std`
+//! Without features the crate has no third-party dependency and needs neither `std` nor an allocator. `qp` (default) adds `alloc`, `std`
 //! and [Clarabel](https://docs.rs/clarabel); `scatter` adds [libm](https://docs.rs/libm), which needs neither.
 //!
 //! # Limits

@@ -13,8 +13,8 @@ pub struct Estimated {
     /// The solution.
     pub solution: Solution,
     /// Estimated error of its values at any time, relative to the largest magnitude of the component of the solution: three
-    /// times the largest difference from a coarser solution, and 2 % of the tolerance that both were given. It is infinite if
-    /// the two ended for different reasons.
+    /// times the largest difference from a coarser solution, and 2 % of the tolerance of that one. It is infinite unless
+    /// both reach the end of the interval or end at the same event.
     pub error: f64,
     /// The method chosen, with its settings.
     pub method: Method,
@@ -36,7 +36,8 @@ impl Volterra<'_> {
     /// Solves the problem on `[0, t_end]` to a tolerance from 1e-12 to 0.1. The tolerance is the error allowed in any value,
     /// relative to the largest magnitude of its component.
     ///
-    /// The method is always [`Collocation`], with more nodes for smaller tolerances and a first panel of a third of a segment.
+    /// The method is always [`Collocation`], with more nodes for smaller tolerances and a first panel of about a
+    /// quarter of the mean length of a segment.
     /// The problem is solved a second time with more nodes on other panels: the difference gives the estimate, and the finer
     /// solution is returned. While the estimate is above the tolerance, both are tightened, a few times; if that does not
     /// suffice, the estimate shows it. A single run of a method of low order with few steps costs less, but its error is only

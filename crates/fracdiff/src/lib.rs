@@ -59,7 +59,7 @@
 //! *Collocation*: on a panel of `x = (t - t0)^(1/q)`, `t0` the last break, the density is a polynomial through Gauss-Legendre
 //! nodes. Kernels are integrated by Gauss-Jacobi rules that represent the singularity exactly: `t_i - s = (x_i - x) Q(x_i, x)`
 //! with a positive, smooth `Q`. The contributions of past panels are Gauss sums, on dyadic pieces where they are near. Panels
-//! are halved until the last Legendre coefficients are negligible, so that they enclose a kink of the density (the end of a
+//! are shortened until the last Legendre coefficients are negligible, so that they enclose a kink of the density (the end of a
 //! contact) ever more closely.
 //!
 //! # Limits

@@ -39,7 +39,8 @@ const ONWARD: f64 = 8.0;
 pub struct Profile {
     /// Values of the parameter, ascending, with the smallest sum of squares for each.
     pub points: Vec<(f64, f64)>,
-    /// Lower end of the interval; `None` if the sum of squares does not rise enough as far as the model exists.
+    /// Lower end of the interval; `None` if the sum of squares does not rise enough within a factor of 3000 (64 first steps of a
+    /// parameter without limits), or as far as the model exists.
     pub low: Option<f64>,
     /// Upper end, likewise.
     pub high: Option<f64>,

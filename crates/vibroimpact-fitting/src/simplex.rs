@@ -104,7 +104,8 @@ fn run(
     (vertices.swap_remove(0), false)
 }
 
-/// Whether all vertices agree: in value to `tolerance`, or in position to its square root (where values are flat to rounding).
+/// Whether all vertices agree: in position to `tolerance`, or in position to its square root and in value to `tolerance` (where values
+/// are flat to rounding).
 /// A search that ends at a kink meets the first condition, one at a smooth minimum either.
 fn is_small(vertices: &[Vertex], tolerance: f64) -> bool {
     let (best, worst) = (&vertices[0], &vertices[vertices.len() - 1]);

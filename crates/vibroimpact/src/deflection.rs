@@ -14,7 +14,8 @@ use serde::Serialize;
 use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure};
 use crate::simulate::Resolved;
 
-/// The motion of structure and striker at some times. Displacements are positive away from the side that is struck.
+/// The motion of structure and striker at some times. Displacements are positive away from the structure, towards the side from which
+/// the striker comes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Deflection {
     /// Locations along the structure (m).

@@ -12,6 +12,13 @@ pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
             let allowed = format!("a structure in whose modes {quantity} is {}", fault.allowed);
             InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
         }
+        // a striker without a mass is a stop
+        [Step::Field(name)]
+            if name == "mass_kg" && fault.value.as_ref().is_some_and(|value| value.to_string() == "inf") =>
+        {
+            let allowed = "left out, with a mass in its place, because no mode of the structure moves at the contact";
+            InvalidInput::new(["striker", "immovable"], "true", allowed)
+        }
         [Step::Field(name)] if ["mass_kg", "speed_m_s"].contains(&name.as_str()) => fault.within("striker"),
         // an amplitude or rate out of range may come from any of the ways in which a scene states the start
         [Step::Field(name), ..] if ["gap_m", "amplitude", "rate"].contains(&name.as_str()) => fault.within("start"),

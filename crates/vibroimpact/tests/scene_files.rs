@@ -606,3 +606,19 @@ fn the_program_reads_every_kind_of_file_and_prints_the_schema() {
     assert_eq!(code, Some(2));
     assert!(told.starts_with("error: version = 2 is not allowed"), "{told}");
 }
+
+/// A stop has no mass that a message could name.
+#[test]
+fn a_stop_at_a_held_end_is_refused() {
+    let scene = json!({
+        "structure": { "kind": "beam", "ends": ["pinned", "free"],
+            "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+        "striker": { "immovable": true, "speed_m_s": 0 },
+        "contact": { "law": "linear-spring", "stiffness_n_m": 1e6 },
+        "location_m": 0,
+        "modes": 10,
+        "start": { "gap_m": 0.001, "moving_modes": [{ "mode": 1, "velocity_m_s": 1, "location_m": 0.5 }] },
+    });
+    let fault = Scene::from_value(&scene).unwrap().simulate().unwrap_err();
+    assert_eq!(fault.field, "striker.immovable", "{fault}");
+}

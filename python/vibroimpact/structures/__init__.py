@@ -11,7 +11,7 @@ reader                                reads                                     
 :func:`from_calculix`                 CalculiX ``.dat`` and ``.frd``              numpy
 :func:`from_nastran`                  Nastran ``.op2``                            pyNastran
 :func:`from_matrices`                 K and M, Matrix Market or scipy.sparse      scipy
-:func:`from_universal`                frequency responses, universal file 58      pyuff
+:func:`from_universal`                frequency responses, universal file 58      pyuff, scipy
 :func:`from_table`                    modes of a test with standard deviations    numpy
 ====================================  ==========================================  =================
 """

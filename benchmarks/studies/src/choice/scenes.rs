@@ -180,6 +180,8 @@ pub(super) fn scene(seed: u64) -> Result<Drawn, Failure> {
         near if near < 0.36 => random.of(&[0.0, 0.5, 1.0]),
         _ => random.share(),
     };
+    // at its held end the structure never meets a stop
+    let share = if kind == "stop" && share == 0.0 { 0.5 } else { share };
     let place = match kind {
         "plate" => {
             let width = structure["width_m"].as_f64().unwrap_or(0.0);

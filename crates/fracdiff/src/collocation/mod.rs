@@ -3,7 +3,8 @@
 //! On a segment that starts at `t0`, panels are intervals of `x = (t - t0)^(1/q)`. With `q` such that `q` times
 //! every order is an integer, solution and density are analytic in `x` up to the start. On each panel both are
 //! polynomials through Gauss-Legendre nodes; the equations at the nodes are solved by Newton's method. The panel is
-//! accepted when the last two Legendre coefficients are negligible, and halved otherwise.
+//! accepted when the last two Legendre coefficients are negligible. Otherwise it is halved, and divided by four at each further
+//! rejection in a row.
 
 mod history;
 mod panel;

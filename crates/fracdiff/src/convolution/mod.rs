@@ -27,8 +27,8 @@ pub(crate) use scheme::Scheme;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Convolution {
-    /// Number of steps, distributed over the segments between breaks by their length, at least 8 each; 1 to 4194304, default
-    /// 1000.
+    /// Number of steps, distributed over the segments between breaks by their length, at least 8 each if there are several; 1
+    /// to 4194304, default 1000.
     pub steps: usize,
 }
 

@@ -18,7 +18,8 @@ use march::{Kernel, Mesh};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SumOfExponentials {
-    /// Number of steps, distributed over the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
+    /// Number of steps, distributed over the segments between breaks, at least 8 each if there are several; 1 to 4194304,
+    /// default 1000.
     pub steps: usize,
     /// Exponent of the mesh `t_j = t0 + length (j/n)^grading` of each segment, 1 to 8; default 2, which keeps the
     /// second order for solutions that start like `sqrt(t)`.
@@ -69,7 +70,8 @@ pub struct GalerkinStates {
     pub beta1: f64,
     /// Logarithm of the highest breakpoint in `xi`; default 1.2 (thesis A.1).
     pub beta2: f64,
-    /// Number of steps, distributed over the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
+    /// Number of steps, distributed over the segments between breaks, at least 8 each if there are several; 1 to 4194304,
+    /// default 1000.
     pub steps: usize,
     /// Exponent of the graded mesh of each segment, 1 to 8; default 2.
     pub grading: f64,

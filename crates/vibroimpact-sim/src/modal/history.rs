@@ -10,7 +10,7 @@ use crate::panel::legendre::BASIS;
 use crate::panel::oscillator::propagate;
 use contact_models::ContactLaw;
 
-/// Motion and force at one time. Displacements are positive away from the side that is struck.
+/// Motion and force at one time. Displacements are positive away from the structure, towards the side from which the striker comes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time since the clock started (s).

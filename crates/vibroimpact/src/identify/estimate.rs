@@ -27,8 +27,8 @@ const BENT: f64 = 0.1;
 pub struct Request {
     /// Probability with which each interval is to hold its parameter.
     pub level: f64,
-    /// Number of starting points of the search: the scene's values, then the best of 64 times as many points within the intervals
-    /// of the search, quasi-random ones and others around the best of these.
+    /// Number of starting points of the search: the scene's values, then the best of 64 times as many points as further
+    /// starts are wanted, within the intervals of the search, quasi-random ones and others around the best of these.
     pub starts: usize,
     /// Candidate experiments; see [`Data::read_candidates`].
     pub candidates: Option<Data>,

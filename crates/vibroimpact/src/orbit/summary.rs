@@ -185,7 +185,7 @@ pub struct Over<'a> {
     pub from: Option<f64>,
     /// The value towards which the branch is followed.
     pub to: f64,
-    /// First and longest step, as parts of the range.
+    /// First step, as a part of the range. The longest is 0.05, or this if it is larger.
     pub step: f64,
     /// How often the branches that begin at period doublings are followed: 1 for those of the branch itself, 2 also for theirs, ...
     pub doublings: u32,

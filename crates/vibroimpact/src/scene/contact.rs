@@ -50,7 +50,7 @@ pub enum Contact {
         #[serde(default)]
         epsilon_m: f64,
     },
-    /// `"linear-spring"`: [`contact_models::LinearSpring`].
+    /// `"linear-spring"`: a linear spring, [`contact_models::LinearSpring`].
     #[serde(alias = "linear")]
     LinearSpring {
         /// Stiffness (N/m).
@@ -81,7 +81,7 @@ pub enum Contact {
         /// Restitution at a wall.
         restitution: Option<f64>,
     },
-    /// `"hunt-crossley"`: [`contact_models::HuntCrossley`].
+    /// `"hunt-crossley"`: a power of the compression with damping in proportion to it, [`contact_models::HuntCrossley`].
     HuntCrossley {
         /// The elastic part with Hertz's exponent, or `stiffness_n_m_n` and `exponent` in its place.
         #[serde(flatten)]
@@ -95,7 +95,7 @@ pub enum Contact {
         /// Restitution at a wall.
         restitution: Option<f64>,
     },
-    /// `"lankarani-nikravesh"`: [`contact_models::LankaraniNikravesh`].
+    /// `"lankarani-nikravesh"`: Hertz contact damped for a restitution near one, [`contact_models::LankaraniNikravesh`].
     LankaraniNikravesh {
         /// The elastic part.
         #[serde(flatten)]
@@ -105,7 +105,7 @@ pub enum Contact {
         /// Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
         lowest_approach_speed_m_s: Option<f64>,
     },
-    /// `"flores"`: [`contact_models::Flores`].
+    /// `"flores"`: Hertz contact damped for any restitution, [`contact_models::Flores`].
     Flores {
         /// The elastic part.
         #[serde(flatten)]
