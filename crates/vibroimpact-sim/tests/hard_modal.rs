@@ -652,3 +652,20 @@ fn rounding_excuses_no_force_that_the_motion_cannot_reach() {
     let after = energy(found.striker_velocity_m_s, found.amplitude[0], found.rate[0]);
     assert!(after <= before * (1.0 + settings.tolerance), "{before:e} J, {after:e} J");
 }
+
+/// A deflected beam is released from rest where it touches a stop: neither has a speed, and no other contact has one.
+#[test]
+fn a_beam_that_is_released_at_a_stop_presses_it() {
+    let modes = pinned(10, 0.01, 0.4).modes;
+    let mut start = Start::at_rest(modes.len());
+    start.amplitude[0] = -1e-3 / modes[0].shape;
+    let structure = Structure { modes };
+    let solver = Solver::new(&structure).unwrap();
+    let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
+    let law = Hertz::new(1e9).unwrap();
+    let solve = |tolerance: f64| solver.solve(&stop, &law, Some(&start), &settings(tolerance)).unwrap();
+    let (coarse, fine) = (solve(1e-6), solve(1e-10));
+    assert_eq!((coarse.outcome, fine.outcome), (Outcome::Sustained, Outcome::Sustained));
+    let [same, peak_n] = [coarse, fine].map(|solution| solution.sub_impacts[0].peak_force_n);
+    assert!(peak_n > 1.0 && (same / peak_n - 1.0).abs() < 1e-7, "{same} {peak_n}");
+}

@@ -138,7 +138,7 @@ fn main() -> ExitCode {
                 // the results are complete, and are printed as usual
                 let _ = print(printed);
             }
-            eprintln!("error: {}", printable(&failure.to_string()));
+            voice::tell(format_args!("error: {}", printable(&failure.to_string())));
             let of_sweep = failure.downcast_ref::<SweepError>();
             if matches!(of_sweep, Some(SweepError::Stopped { .. })) {
                 return ExitCode::from(sweep::STOPPED);
@@ -160,7 +160,7 @@ fn misused(fault: &clap::Error) -> ExitCode {
         let told = typed.iter().fold(fault.render().to_string(), |told, argument| {
             if hostile(argument) { told.replace(argument.as_str(), &shorten(&printable(argument))) } else { told }
         });
-        eprint!("{}", printable(&told));
+        voice::tell(printable(told.trim_end()));
     } else {
         // there is no other place for the message
         let _ = fault.print();

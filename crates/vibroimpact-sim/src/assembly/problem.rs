@@ -6,6 +6,8 @@ use invalid_input::InvalidInput;
 
 /// Bounds on magnitudes: wide enough for any system of units, narrow enough that no product overflows.
 pub(crate) const SCALE_MAX: f64 = 1e30;
+/// The steepest change of a sampled force (N/s).
+const SLOPE_MAX_N_S: f64 = 1e60;
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// Smallest tolerance.
@@ -324,8 +326,14 @@ impl Force {
                 InvalidInput::unless(equal, "forces_n", count, "a list with one value for each time")?;
                 require_all_finite(forces_n, times_s.len(), "forces_n")?;
                 let wrong = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1]);
-                wrong.map_or(Ok(()), |i| {
-                    Err(InvalidInput::new(("times_s", i), times_s[i], "not less than the time before"))
+                if let Some(i) = wrong {
+                    return Err(InvalidInput::new(("times_s", i), times_s[i], "not less than the time before"));
+                }
+                let slope = |i: usize| (forces_n[i] - forces_n[i - 1]) / (times_s[i] - times_s[i - 1]);
+                let steep = (1..times_s.len()).find(|&i| times_s[i] > times_s[i - 1] && slope(i).abs() > SLOPE_MAX_N_S);
+                steep.map_or(Ok(()), |i| {
+                    let allowed = "equal to the time before, for a jump, or so much later that the force changes by at most 1e60 N/s";
+                    Err(InvalidInput::new(("times_s", i), times_s[i], allowed))
                 })
             }
         }

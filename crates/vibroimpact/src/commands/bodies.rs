@@ -11,7 +11,7 @@ use vibroimpact::vibroimpact_sim::assembly::Interval;
 
 use super::products::Products;
 use super::sweep::stop_on_signal;
-use super::voice::{is_quiet, signature};
+use super::voice::{is_quiet, signature, tell};
 
 /// Solves the scene and returns the text to print; at most `intervals` intervals of contact are listed.
 pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) -> Result<String, Failure> {
@@ -86,7 +86,7 @@ impl Progress {
             bar.set_message(format!("{} of {}", quantity(time_s, "s"), quantity(self.end_s, "s")));
         } else if self.told.elapsed() >= BETWEEN_LINES {
             self.told = Instant::now();
-            eprintln!("simulate: {} of {}", quantity(time_s, "s"), quantity(self.end_s, "s"));
+            tell(format_args!("simulate: {} of {}", quantity(time_s, "s"), quantity(self.end_s, "s")));
         }
     }
 

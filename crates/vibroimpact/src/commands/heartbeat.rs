@@ -4,7 +4,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::voice::{is_quiet, note, seconds};
+use super::voice::{is_quiet, note, seconds, tell};
 
 /// Time before the first line.
 const FIRST: Duration = Duration::from_secs(10);
@@ -15,7 +15,7 @@ const LONGEST: Duration = Duration::from_secs(300);
 pub fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
     let tell = |elapsed: Duration| {
         if !is_quiet() {
-            eprintln!("{name}: {} s so far, still computing", elapsed.as_secs());
+            tell(format_args!("{name}: {} s so far, still computing", elapsed.as_secs()));
         }
     };
     let begun = Instant::now();

@@ -87,6 +87,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     };
     let stop = stop_on_signal()?;
     let (Some(field), Some(to)) = (&arguments.over, arguments.to) else {
+        arguments.picture.require_none("left out without --over, because it draws a branch")?;
         let found = scene.orbit_until(&settings, &|| stop.load(Ordering::Relaxed))?;
         return match arguments.json {
             true => found.json(&scene),

@@ -53,6 +53,12 @@ impl Picture {
         require_free(option, path, self.force)
     }
 
+    /// Rejects a figure where there is none to draw.
+    pub fn require_none(&self, allowed: &'static str) -> Result<(), InvalidInput> {
+        let path = |plot: &PathBuf| Err(InvalidInput::new("--plot", plot.display().to_string(), allowed));
+        self.plot.as_ref().map_or(Ok(()), path)
+    }
+
     /// Draws the figure, if it is requested, and returns a line about it for the text; empty if the result is JSON.
     pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
         match &self.plot {

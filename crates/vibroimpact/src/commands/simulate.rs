@@ -102,8 +102,9 @@ fn svg_file(name: &str) -> Result<PathBuf, String> {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && seconds.is_finite());
-    seconds.ok_or_else(|| "it must be a time in seconds, a finite number greater than 0".to_owned())
+    let seconds = text.parse().ok().filter(|seconds: &f64| (1e-30..=1e12).contains(seconds));
+    seconds
+        .ok_or_else(|| "it must be a time in seconds, a finite number greater than 0 (from 1e-30 to 1e12)".to_owned())
 }
 
 /// Runs the command and returns the text to print.

@@ -13,7 +13,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::sweep::{self, Part, Status, Sweep, SweepError, Tally};
 use vibroimpact::text::printable;
 
-use super::voice::is_quiet;
+use super::voice::{is_quiet, tell};
 
 pub const SWEEP_EXAMPLES: &str = r#"Examples:
   vibroimpact sweep sweep.json --out results/                  computes, shows the time left, resumes if interrupted
@@ -244,7 +244,7 @@ impl Progress {
                 self.bar = Some(bar);
             }
             if !self.quiet && status.done > 0 && !status.is_complete() {
-                eprintln!("{} of {} points are done; continuing", status.done, status.points);
+                tell(format_args!("{} of {} points are done; continuing", status.done, status.points));
             }
         }
         self.last = Some(status);
@@ -256,7 +256,7 @@ impl Progress {
             let rate = computed as f64 / elapsed_s;
             let left = Duration::try_from_secs_f64((status.points - status.done) as f64 / rate);
             let left = left.map_or_else(|_| "unknown".to_owned(), |left| HumanDuration(left).to_string());
-            eprintln!("{} of {} points, {rate:.0} a second, {left} left", status.done, status.points);
+            tell(format_args!("{} of {} points, {rate:.0} a second, {left} left", status.done, status.points));
         }
     }
 

@@ -1,5 +1,7 @@
 //! The amount of output in addition to the result: progress and notes on the standard error, names of written files.
 
+use std::fmt::Display;
+use std::io::{Write, stderr};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -36,8 +38,13 @@ pub fn is_quiet() -> bool {
 /// Prints a note if `--verbose` was given.
 pub fn note(text: impl FnOnce() -> String) {
     if get().0 == Voice::Verbose {
-        eprintln!("{}", text());
+        tell(text());
     }
+}
+
+/// Prints a line on the standard error. That it cannot be written is no reason to fail.
+pub fn tell(line: impl Display) {
+    let _ = writeln!(stderr(), "{line}");
 }
 
 /// The scene of this run of the program, for the end of a printed result.

@@ -22,6 +22,9 @@ const INTERVALS: usize = 200;
 /// Duration of the animation (s).
 const SHOWN_S: f64 = 10.0;
 
+/// Smaller deflections (m) are not enlarged.
+const STILL_M: f64 = 1e-30;
+
 /// Beam or string with the ball that strikes it at the location `location_m`, above the contact force, as a repeated animation in
 /// slow motion. The displacements of both bodies are enlarged by the same stated factor.
 ///
@@ -33,7 +36,8 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
     let x = |place_m: f64| ENDS[0] + (ENDS[1] - ENDS[0]) * place_m / length_m;
     let size = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
     let largest_m = size(&mut structure_m.iter().flatten().copied());
-    let enlarged = LARGEST / largest_m;
+    let moves = largest_m > STILL_M;
+    let enlarged = if moves { LARGEST / largest_m } else { 1.0 };
     // results count displacements positive towards the ball, which is above
     let y = |displacement_m: f64| REST - enlarged * displacement_m;
     let lines: Vec<String> = structure_m
@@ -75,7 +79,10 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
         12.0,
         42.0,
         "start",
-        &format!("{} in {SHOWN_S} s; deflection enlarged {scale:.1} times", quantity(until_s, "s")),
+        &match moves {
+            true => format!("{} in {SHOWN_S} s; deflection enlarged {scale:.1} times", quantity(until_s, "s")),
+            false => format!("{} in {SHOWN_S} s; no deflection", quantity(until_s, "s")),
+        },
     );
     text(ENDS[0] - 6.0, FORCE[0] - FORCE[1] + 4.0, "end", &quantity(peak_n, "N"));
     text(ENDS[0], FORCE[0] + 18.0, "middle", "0");
