@@ -529,3 +529,29 @@ fn derivatives_at_a_touch_at_the_start_hold_on_one_side() {
     );
     assert!(output(&arguments(&[])).contains("Derivatives by contacts[0].gap_m hold for an increase of it"));
 }
+
+/// A jump moves to one side only, and so does a load that begins with the run. Other times have derivatives.
+#[test]
+fn times_at_which_a_load_jumps_have_no_derivative() {
+    let scene = |times: [f64; 3]| {
+        let tree = json!({
+            "bodies": { "ball": { "kind": "mass", "mass_kg": 1, "position_m": 1 } },
+            "contacts": [{ "name": "c", "between": [{ "body": "ball" }, "ground"], "law": "hertz", "stiffness_n_m1_5": 1e6 }],
+            "loads": [{ "body": "ball", "times_s": times, "forces_n": [5, 5, 0] }],
+            "end_s": 0.05,
+        });
+        AssemblyScene::from_value(&tree).unwrap()
+    };
+    let pulse = scene([0.0, 0.01, 0.01]);
+    for k in 0..3 {
+        let fault = pulse.sensitivity(&[format!("loads[0].times_s[{k}]")]).unwrap_err();
+        assert!(fault.field == "--by" && fault.to_string().contains("a load jumps there"), "{fault}");
+    }
+    let found = pulse.sensitivity(&[]).unwrap();
+    assert_eq!(found.table.left_out.iter().filter(|left| left.path.contains("times_s")).count(), 3);
+    // half of the last interval counts, and it begins later
+    let ramp = scene([0.0, 0.01, 0.02]);
+    let by_time = ramp.sensitivity(&["loads[0].times_s[2]".to_owned()]).unwrap();
+    let value = by_time.table.of("points[0].velocity_m_s", "loads[0].times_s[2]").unwrap().value;
+    assert!((value.abs() - 2.5).abs() < 1e-9, "{value}");
+}
