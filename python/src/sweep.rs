@@ -17,9 +17,9 @@ const MOST_THREADS: usize = 1024;
 /// Solve many scenes that differ in some fields, on all cores.
 ///
 /// `definition` is a sweep file or its content: `scene` or `scene_file`, with `vary`, `random` or `uncertain` fields. Returns the
-/// columns of `results.csv` as a dictionary of arrays: `index`, the varied fields under their paths, and the results. Missing numbers are NaN; a scene
-/// that cannot be solved has the reason in `error`, which is empty otherwise. The values do not depend on `threads`, which is
-/// the number of cores by default. Ctrl-C ends the sweep.
+/// columns of `results.csv` as a dictionary of arrays: `index`, the varied fields under their paths, and the results. Missing
+/// numbers are NaN; a scene that cannot be solved has the reason in `error`, which is empty otherwise. The values do not depend on
+/// `threads`, which is the number of cores by default. Ctrl-C ends the sweep.
 #[pyfunction]
 #[pyo3(signature = (definition, *, threads = None))]
 pub fn sweep(py: Python<'_>, definition: Source, threads: Option<usize>) -> PyResult<Bound<'_, PyDict>> {

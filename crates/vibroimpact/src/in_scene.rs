@@ -1,6 +1,6 @@
 //! Errors of the solver with the field names of scenes.
 
-use invalid_input::{InvalidInput, Step};
+use invalid_input::{InvalidInput, Step, Value};
 
 /// The solver's error with the field names of scenes.
 pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
@@ -12,10 +12,8 @@ pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
             let allowed = format!("a structure in whose modes {quantity} is {}", fault.allowed);
             InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
         }
-        // a striker without a mass is a stop
-        [Step::Field(name)]
-            if name == "mass_kg" && fault.value.as_ref().is_some_and(|value| value.to_string() == "inf") =>
-        {
+        // a striker of infinite mass is a stop
+        [Step::Field(name)] if name == "mass_kg" && fault.value == Some(Value::Number(f64::INFINITY)) => {
             let allowed = "left out, with a mass in its place, because no mode of the structure moves at the contact";
             InvalidInput::new(["striker", "immovable"], "true", allowed)
         }

@@ -17,8 +17,8 @@ impl Beam {
     /// The `count` remainder modes (1 to 4) at `x_m` of all modes but the first `kept` (rigid-body modes included), so that
     /// `kept` modes and these few respond to a force at `x_m` nearly as all modes do; see [`remainder_modes`].
     ///
-    /// Computes twice as many modes as `kept`, and at least 64 more. For many locations or many values of `kept`, use [`Modes::remainder`] with modes
-    /// that are computed once.
+    /// Computes twice as many modes as `kept`, and at least 64 more. For many locations or many values of `kept`, use
+    /// [`Modes::remainder`] with modes that are computed once.
     ///
     /// ```
     /// use beam_modes::{Beam, End, Segment};

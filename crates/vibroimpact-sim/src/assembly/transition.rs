@@ -151,7 +151,8 @@ impl<'a> March<'a> {
         state.phase = Phase::Closed(Box::new(touch));
         state.momentum = state.momentum.max(momentum);
         if state.momentum == 0.0 && inverse > 0.0 {
-            // it has no speed of its own: the other contacts set the momentum that it will transmit, or modes that are displaced
+            // it has no speed of its own: the momentum that it will transmit is that of the other contacts or, at rest, that which
+            // displaced modes can give it
             let others = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
             let displaced = |(k, psi): &(usize, f64)| (psi * self.system.omega[*k] * self.amplitude[*k]).abs();
             let speed = if others > 0.0 { others } else { link.elastic.iter().map(displaced).sum() };

@@ -64,7 +64,10 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
             "<animate attributeName=\"{attribute}\" dur=\"{SHOWN_S}s\" repeatCount=\"indefinite\" values=\"{values}\"/>"
         )
     };
-    let scale = enlarged * length_m / (ENDS[1] - ENDS[0]);
+    let deflection = match moves {
+        true => format!("deflection enlarged {:.1} times", enlarged * length_m / (ENDS[1] - ENDS[0])),
+        false => "no deflection".to_owned(),
+    };
     let [width, height] = SIZE;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
@@ -75,15 +78,7 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
         let _ = writeln!(svg, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" fill=\"#222\">{words}</text>");
     };
     text(12.0, 22.0, "start", title);
-    text(
-        12.0,
-        42.0,
-        "start",
-        &match moves {
-            true => format!("{} in {SHOWN_S} s; deflection enlarged {scale:.1} times", quantity(until_s, "s")),
-            false => format!("{} in {SHOWN_S} s; no deflection", quantity(until_s, "s")),
-        },
-    );
+    text(12.0, 42.0, "start", &format!("{} in {SHOWN_S} s; {deflection}", quantity(until_s, "s")));
     text(ENDS[0] - 6.0, FORCE[0] - FORCE[1] + 4.0, "end", &quantity(peak_n, "N"));
     text(ENDS[0], FORCE[0] + 18.0, "middle", "0");
     text(ENDS[1], FORCE[0] + 18.0, "end", &quantity(until_s, "s"));
