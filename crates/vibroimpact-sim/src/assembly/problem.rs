@@ -12,6 +12,8 @@ const SLOPE_MAX_N_S: f64 = 1e60;
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// Smallest tolerance.
 pub(crate) const FINEST_TOLERANCE: f64 = 1e-13;
+/// The largest steady motion of a rigid mode at a contact (m): rounding is then below 1e-9 m.
+const STEADY_MAX_M: f64 = 1e6;
 /// A harmonic load whose frequency is closer than this (relative) to that of an undamped mode which it excites is resonant.
 const RESONANCE: f64 = 1e-9;
 
@@ -265,9 +267,29 @@ impl<L> Assembly<L> {
         self.require_shape(load.body, &load.shape)?;
         load.force.check().map_err(|fault| fault.within("force"))?;
         match load.force {
-            Force::Harmonic { omega_rad_s, .. } => self.require_no_resonance(load, omega_rad_s),
+            Force::Harmonic { force_n, omega_rad_s, .. } => {
+                self.require_no_resonance(load, omega_rad_s)?;
+                self.require_no_drift(load, force_n, omega_rad_s)
+            }
             _ => Ok(()),
         }
+    }
+
+    /// Rejects loads so slow that the steady motion of a rigid mode, `f/omega^2`, carries a contact far beyond any motion of interest,
+    /// which is then lost in the rounding of the difference from it.
+    fn require_no_drift(&self, load: &Load, force_n: f64, omega_rad_s: f64) -> Result<(), InvalidInput> {
+        let carried_m = |shape: &[f64]| {
+            let modes = self.bodies[load.body].modes.iter().zip(load.shape.iter().zip(shape));
+            let rigid = modes.filter(|(mode, _)| mode.is_rigid());
+            rigid.map(|(_, (loaded, psi))| (force_n * loaded * psi).abs() / omega_rad_s.powi(2)).fold(0.0, f64::max)
+        };
+        let far = self.contacts.iter().flat_map(|contact| &contact.sides).any(|side| match side {
+            Point::OfBody { body, shape } => *body == load.body && carried_m(shape) > STEADY_MAX_M,
+            Point::Ground => false,
+        });
+        let allowed = "so large that the steady motion of the free body, force/(mass omega^2), is at most 1e6 m; a slower load can be \
+                       stated by its values at some times";
+        InvalidInput::unless(!far, ["force", "omega_rad_s"], omega_rad_s, allowed)
     }
 
     /// Rejects loads at the frequency of an undamped mode, whose motion would grow without bound.
