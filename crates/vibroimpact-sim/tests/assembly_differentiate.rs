@@ -273,6 +273,27 @@ fn forces_that_jump_together_have_a_derivative_only_if_they_stay_together() {
     assert!(matches!(gap.derivatives[0], Err(NoDerivative::Together { contact: 1, .. })), "{:?}", gap.derivatives);
 }
 
+/// Of two loads that jump at once only one is moved, so that the times coincide here and not at the neighbours.
+#[test]
+fn a_load_that_jumps_beside_another_has_no_derivative_by_its_time() {
+    let pose = |later: f64| {
+        let pulse = |time_s: f64| Load {
+            body: 0,
+            shape: vec![0.1f64.sqrt().recip()],
+            force: Force::Sampled { times_s: vec![0.0, time_s, time_s], forces_n: vec![1.0, 1.0, 0.0] },
+        };
+        Assembly { loads: vec![pulse(0.005), pulse(0.005 + later)], ..pair(Hertz::new(1e9).unwrap().into())(1.0, 0.0) }
+    };
+    let assembly = pose(0.0);
+    for places in [STEPS, [1.0, 2.0, 3.0, 4.0]] {
+        let offsets = places.map(|place| 1e-6 * place);
+        let near = offsets.map(pose);
+        let parameter = Parameter { offsets, neighbours: near.each_ref(), end_s: [0.02; 4], changes_laws: false };
+        let found = Solver::new(&assembly).unwrap().differentiate(&Settings::until(0.02), &[parameter]).unwrap();
+        assert_eq!(found.derivatives[0].as_ref().unwrap_err(), &NoDerivative::Split);
+    }
+}
+
 #[test]
 fn bad_parameters_are_named() {
     let pose = pair(Hertz::new(1e9).unwrap().into());

@@ -35,6 +35,11 @@ impl LoadChange {
         self.stencil.slope(self.neighbours.each_ref().map(|(system, loads)| of(system, loads)))
     }
 
+    /// Whether breaks of the loads at hand coincide, or lie at the start, and do not at neighbouring values.
+    pub fn splits(&self, loads: &Loads) -> bool {
+        self.neighbours.iter().any(|(_, near)| near.breaks_beside(loads) > 0)
+    }
+
     /// The changes of motions of all modes, in the order of a system with the same modes.
     fn of_modes(&self, system: &System, motions: &[(Vec<f64>, Vec<f64>); 4]) -> (Vec<f64>, Vec<f64>) {
         let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);

@@ -34,6 +34,8 @@ pub enum NoDerivative {
         /// When (s).
         time_s: f64,
     },
+    /// Times at which loads jump or change their slope coincide, or one is that of the start, and after a change they do not.
+    Split,
     /// The derivatives are not finite.
     Infinite,
 }
@@ -52,6 +54,9 @@ impl fmt::Display for NoDerivative {
                 write!(f, "the law of contact {contact} may follow either of two branches at {time_s} s")
             }
             NoDerivative::Break { time_s } => write!(f, "an event coincides with a break of a load at {time_s} s"),
+            NoDerivative::Split => {
+                f.write_str("a load jumps or begins with the run, so that the derivatives to both sides differ")
+            }
             NoDerivative::Infinite => f.write_str("the derivatives are not finite"),
         }
     }

@@ -19,7 +19,9 @@ pub(super) fn collect<T, D>(
     refusal: impl Fn(NoDerivative) -> Refusal,
 ) -> Result<Table, InvalidInput> {
     let (of_fields, of_draws) = derivatives.split_at(around.near.len());
+    // of the reasons, only this one lies in the field
     if let Some(Err(why)) = of_fields.first()
+        && *why != NoDerivative::Split
         && of_fields.iter().all(Result::is_err)
     {
         return Err(refusal(*why).error(None));

@@ -69,11 +69,6 @@ impl<T> Neighbours<T> {
         (field, path, value): (&str, &FieldPath, f64),
         by: &Posing<T>,
     ) -> Result<Neighbours<T>, String> {
-        if bounds_a_jump(tree, field, value) {
-            return Err(
-                "a load jumps there or begins with the run, so that the derivatives to both sides differ".to_owned()
-            );
-        }
         let steps: &[f64] = if value == 0.0 { &STEPS_AT_ZERO } else { &STEPS.map(|step| step * value.abs()) };
         let here = (by.sides)(tree);
         let mut reason = String::new();
@@ -154,19 +149,6 @@ impl<T> Neighbours<T> {
         let errors = self.magnification() * (error + 4.0 * f64::EPSILON * here.1.abs());
         Derivative { value: all, uncertainty: Some((all - few).abs() + errors) }
     }
-}
-
-/// Whether this is a time of a sampled load at which it jumps, or the start of the run.
-fn bounds_a_jump(tree: &Value, field: &str, value: f64) -> bool {
-    let place = || {
-        let (list, index) = field.strip_suffix(']')?.rsplit_once('[')?;
-        let list = list.ends_with("times_s").then(|| FieldPath::parse(list))??;
-        Some((list.get(tree)?.as_array()?.as_slice(), index.parse::<usize>().ok()?))
-    };
-    let Some((times, index)) = place() else { return false };
-    let before = index.checked_sub(1).and_then(|before| times.get(before));
-    let same = |other: Option<&Value>| other.and_then(Value::as_f64) == Some(value);
-    value == 0.0 || same(before) || same(times.get(index + 1))
 }
 
 /// The reason why a number cannot change. Beyond a bound the error is that of the number itself, which says nothing about the other

@@ -35,6 +35,10 @@ impl Refusal {
                 format!("an event coincides with a break of a load at {} s", seconds(time_s)),
                 "one in which no event of a contact coincides with a break of a load",
             ),
+            NoDerivative::Split => (
+                "a load jumps there or begins with the run, so that the derivatives to both sides differ".to_owned(),
+                "one in which no load jumps or begins at the time that is changed",
+            ),
             _ => ("the derivatives are not finite".to_owned(), "one with finite derivatives"),
         };
         Refusal { happens, allowed }

@@ -137,26 +137,29 @@ impl<'a> Walk<'a> {
             since_s: 0.0,
             peaks: [0.0; 2],
         };
+        let loads = Loads::new(posed.loads, system);
+        let splits = |change: &Change| change.loads.as_ref().is_some_and(|change| change.splits(&loads));
         let tangent = |change: &Change| Tangent {
             amplitude: change.amplitude.clone(),
             rate: change.rate.clone(),
             time_s: 0.0,
             intervals: Vec::new(),
             contacts: change.gap_m.iter().map(|gap| Carried { reference: -gap, ..Carried::default() }).collect(),
-            refused: None,
+            refused: splits(change).then_some(NoDerivative::Split),
         };
+        let tangents = changes.iter().map(tangent).collect();
         Walk {
             posed,
             system,
             changes,
             units: system.links.iter().map(|link| link.spans.iter().map(unit).collect()).collect(),
             modes_move: changes.iter().any(|change| change.moves_modes),
-            loads: Loads::new(posed.loads, system),
+            loads,
             load_changes: changes.iter().map(|change| change.loads.clone()).collect(),
             expansions,
             blocks: Blocks::default(),
             contacts: posed.gaps_m.iter().map(followed).collect(),
-            tangents: changes.iter().map(tangent).collect(),
+            tangents,
             moved: changes.iter().map(|_| Moved::default()).collect(),
             begun: 0,
             touches: [f64::INFINITY, 0.0],
