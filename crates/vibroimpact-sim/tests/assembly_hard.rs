@@ -319,6 +319,26 @@ fn a_dashpot_under_loads_is_solved_to_the_finest_tolerance() {
     assert!((impulse(&coarse) - impulse(&fine)).abs() < 1e-10 * impulse(&fine));
 }
 
+/// Beside a wall the force of spring and dashpot is zero after `t_1`, where `tan(w t_1) = -2 b w/(w_0^2 - 2 b^2)`, with `b = c/2m`. The
+/// spring recovers after the ball for another `c/k`, however short that is.
+#[test]
+fn a_spring_recovers_from_a_dashpot_of_any_size() {
+    let (mass_kg, k) = (0.1, 1e7);
+    for c in [1e-30, 1e-20, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 100.0] {
+        let law = Law::from(KelvinVoigt::new(k, c).unwrap());
+        let ball = Contact { sides: [on(0, &[f64::sqrt(mass_kg).recip()]), Point::Ground], gap_m: 0.0, law };
+        let bodies = vec![Body::mass(mass_kg, 0.01, -4.43)];
+        let (_, seen) = solve(&Assembly { bodies, contacts: vec![ball], loads: vec![] }, 0.01);
+        let b = 0.5 * c / mass_kg;
+        let square = k / mass_kg;
+        let turning = (square - b * b).sqrt();
+        let pressed = (2.0 * b * turning).atan2(2.0 * b * b - square) / turning;
+        let [(_, only)] = seen.as_slice() else { panic!("{c}: {seen:?}") };
+        let lasted = only.end_s.unwrap() - only.start_s;
+        assert!((lasted - pressed - c / k).abs() < 1e-9 * lasted, "{c}: {lasted} for {pressed}");
+    }
+}
+
 /// A ball between two stops without play, pushed by a spring that vibrates, leaves one stop when it meets the other. Rounding decides
 /// which comes first, and must not add intervals of contact without length.
 #[test]

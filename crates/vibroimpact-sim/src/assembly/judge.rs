@@ -75,7 +75,7 @@ impl<'a> March<'a> {
                         per_overlap * rho[2],
                     ],
                     noise,
-                    residue: 2.0 * residue,
+                    residue: 2.0 * (per.0.abs() * residue + per.1.abs() * rate_residue),
                     slope_residue: 2.0 * per_overlap * rate_residue * h,
                 };
                 let beginning = || {

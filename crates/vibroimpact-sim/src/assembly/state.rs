@@ -50,9 +50,9 @@ pub(crate) struct Touch {
     pub ends_by_rate: bool,
     /// Whether the force may depend on the rate, from the law's values on this branch so far.
     pub force_by_rate: bool,
-    /// Value at the transition of the event function that led to the branch; ideally zero.
+    /// Distance of the overlap (m) and of its rate (m/s), at the transition that led to the branch, from where the event function is
+    /// zero; ideally zero.
     pub residue: f64,
-    /// The corresponding error of the rate (m/s), if that function depends on it.
     pub rate_residue: f64,
     /// Whether the force begins here and now as `t^(3/2)`.
     pub begins: bool,
@@ -80,6 +80,14 @@ impl State {
         // for a contact that has just begun, the distance covered at its speed in a microsecond
         let compression = if within(compression) { compression } else { 1e-6 * speed };
         (within(compression) && within(speed)).then_some((compression, speed))
+    }
+
+    /// The shortest way, measured in these scales, from the present overlap and rate to a boundary: its components.
+    pub fn beside(&self, boundary: &Boundary) -> (f64, f64) {
+        let (compression, speed) = self.scales().unwrap_or((1.0, 1.0));
+        let (by_overlap, by_rate) = (boundary.per_compression.abs() * compression, boundary.per_rate.abs() * speed);
+        let way = boundary.margin(self.overlap, self.rate).abs() / by_overlap.hypot(by_rate).powi(2);
+        (way * by_overlap * compression, way * by_rate * speed)
     }
 
     pub fn is_closed(&self) -> bool {

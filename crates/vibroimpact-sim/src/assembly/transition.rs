@@ -223,13 +223,12 @@ impl<'a> March<'a> {
             return self.touch(c, 0.0);
         };
         let Some(&boundary) = self.states[c].ends.get(target.boundary) else { return };
-        let residue = boundary.margin(self.states[c].overlap, self.states[c].rate).abs();
+        let (residue, rate_residue) = self.states[c].beside(&boundary);
         match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
                 self.enter(c, branch);
                 if let Some(touch) = self.states[c].touch_mut() {
-                    touch.residue = residue;
-                    touch.rate_residue = if boundary.per_rate == 0.0 { 0.0 } else { residue / boundary.per_rate.abs() };
+                    (touch.residue, touch.rate_residue) = (residue, rate_residue);
                 }
                 self.event(c, Event::Cross(target.boundary));
             }
