@@ -127,6 +127,13 @@ pub trait ContactLaw: Send + Sync {
     /// an integrator takes from `per_rate_n_s_m`.
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force;
 
+    /// [`ContactLaw::force`] at several compressions and rates, by one call and with the same results.
+    fn forces(&self, branch: &Branch, compressions_m: &[f64], rates_m_s: &[f64], forces: &mut [Force]) {
+        for (force, (compression_m, rate_m_s)) in forces.iter_mut().zip(compressions_m.iter().zip(rates_m_s)) {
+            *force = self.force(branch, *compression_m, *rate_m_s);
+        }
+    }
+
     /// Energy (J) that the contact would return if it were unloaded from here slowly and without reversal until it releases.
     /// The rest of the work of the bodies is dissipated.
     fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64;
@@ -157,6 +164,10 @@ macro_rules! stands_for_a_law {
 
             fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
                 (**self).force(branch, compression_m, rate_m_s)
+            }
+
+            fn forces(&self, branch: &Branch, compressions_m: &[f64], rates_m_s: &[f64], forces: &mut [Force]) {
+                (**self).forces(branch, compressions_m, rates_m_s, forces);
             }
 
             fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {

@@ -114,6 +114,10 @@ impl ContactLaw for Law {
         each!(self, law => law.force(branch, compression_m, rate_m_s))
     }
 
+    fn forces(&self, branch: &Branch, compressions_m: &[f64], rates_m_s: &[f64], forces: &mut [Force]) {
+        each!(self, law => law.forces(branch, compressions_m, rates_m_s, forces));
+    }
+
     fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
         each!(self, law => law.stored_energy_j(branch, compression_m))
     }

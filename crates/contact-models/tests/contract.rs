@@ -3,7 +3,7 @@
 use crate::common;
 
 use crate::common::{Motion, laws, motions, walk};
-use contact_models::{ContactLaw, Law, Memory, check_contract, check_contract_along, trace};
+use contact_models::{ContactLaw, Force, Law, Memory, check_contract, check_contract_along, trace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -29,6 +29,9 @@ proptest! {
             let numbers = [force.force_n, force.per_compression_n_m, force.per_rate_n_s_m, energy];
             prop_assert!(numbers.iter().all(|number| number.is_finite()), "{law:?} {state:?} {force:?} {energy}");
             prop_assert!(law.stored_energy_j(&state.branch, state.compression_m) >= 0.0, "{law:?} {state:?}");
+            let mut both = [Force::ZERO; 2];
+            law.forces(&state.branch, &[state.compression_m, xi], &[-v, v], &mut both);
+            prop_assert_eq!(both, [law.force(&state.branch, state.compression_m, -v), force]);
         }
         for crossing in &walk.crossings {
             let (branch, xi, v) = (crossing.branch_before, crossing.compression_m, crossing.rate_m_s);

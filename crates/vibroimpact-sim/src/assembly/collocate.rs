@@ -115,9 +115,7 @@ impl Newton {
         for _ in 0..ITERATIONS_MAX {
             counts.newton_iterations += 1;
             for (c, unknown) in unknowns.iter().enumerate() {
-                for i in 0..Q {
-                    values[c][i] = unknown.law.force(&unknown.branch, found[c].compression[i], found[c].rate[i]);
-                }
+                unknown.law.forces(&unknown.branch, &found[c].compression, &found[c].rate, &mut values[c]);
                 counts.law_evaluations += Q as u64;
                 if found[c].force_by_rate {
                     let tells = |value: &Force| value.per_rate_n_s_m != 0.0;

@@ -107,6 +107,11 @@ fn equilibrium(march: &March, closed: Vec<usize>) -> Option<Equilibrium> {
     if m > n {
         return None;
     }
+    let load = DVector::from_fn(m, |r, _| march.loads.line(rigid[r], march.time_s).0);
+    // as many forces as rigid modes are all zero if nothing loads these, and then no contact is held closed
+    if m == n && load.iter().all(|load| *load == 0.0) {
+        return None;
+    }
     let psi = |c: usize, k: usize| -> f64 {
         let found = system.links[c].rigid.iter().find(|(other, _)| *other == k);
         found.map_or(0.0, |(_, psi)| *psi)
@@ -129,7 +134,6 @@ fn equilibrium(march: &March, closed: Vec<usize>) -> Option<Equilibrium> {
     let mut force: DVector<f64> =
         DVector::from_fn(n, |i, _| law_at(march, closed[i], march.states[closed[i]].overlap).0);
     let mut amplitude: DVector<f64> = DVector::from_fn(m, |r, _| march.amplitude[rigid[r]]);
-    let load = DVector::from_fn(m, |r, _| march.loads.line(rigid[r], march.time_s).0);
     for _ in 0..ITERATIONS_MAX {
         let compression = DVector::from_column_slice(&unloaded) - &flexibility * &force + &rigid_part * &amplitude;
         let laws: Vec<(f64, f64)> = (0..n).map(|i| law_at(march, closed[i], compression[i])).collect();
