@@ -34,11 +34,10 @@ pub struct Stepped {
     pub steps: f64,
 }
 
-/// Rebound speed over approach speed of a rigid striker at a wall, by the semi-implicit Euler rule (1) with a fixed step. It is
-/// zero if the striker has not separated after 100,000 steps.
+/// Rebound speed over approach speed of a rigid striker at a wall, by the semi-implicit Euler rule (1) with a fixed step.
 ///
 /// # Errors
-/// A mass, speed or step that is not positive.
+/// A mass, speed or step that is not positive; a step so short that the contact has not ended after 100,000 steps.
 pub fn stepped_restitution(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64) -> Result<Stepped, InvalidInput> {
     require_positive("mass_kg", mass_kg)?;
     require_positive("speed_m_s", speed_m_s)?;
@@ -46,7 +45,10 @@ pub fn stepped_restitution(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64)
     let mut found = Stepped { lowest: f64::INFINITY, mean: 0.0, highest: 0.0, steps: 0.0 };
     for phase in 0..PHASES {
         let depth_m = (f64::from(phase) + 0.5) / f64::from(PHASES) * speed_m_s * step_s;
-        let (restitution, steps) = rebound(law, mass_kg, speed_m_s, step_s, depth_m);
+        let (restitution, steps) = rebound(law, mass_kg, speed_m_s, step_s, depth_m).ok_or_else(|| {
+            let allowed = format!("longer, because the contact has not ended after {MOST_STEPS} steps");
+            InvalidInput::new("step_s", step_s, allowed)
+        })?;
         found.lowest = found.lowest.min(restitution);
         found.highest = found.highest.max(restitution);
         found.mean += restitution / f64::from(PHASES);
@@ -55,8 +57,8 @@ pub fn stepped_restitution(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64)
     Ok(found)
 }
 
-/// Restitution and number of steps of a contact that is detected at this depth.
-fn rebound(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64, depth_m: f64) -> (f64, u32) {
+/// Restitution and number of steps of a contact that is detected at this depth; none if it does not end.
+fn rebound(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64, depth_m: f64) -> Option<(f64, u32)> {
     let mut branch = law.touch(&Memory::default(), speed_m_s);
     let (mut xi, mut v) = (depth_m, speed_m_s);
     for step in 0..MOST_STEPS {
@@ -66,11 +68,11 @@ fn rebound(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64, depth_m: f64) -
             let Some(which) = met else { break };
             match law.cross(&branch, which, xi, v) {
                 After::Continue(next) => branch = next,
-                After::Release(_) => return ((-v / speed_m_s).max(0.0), step),
+                After::Release(_) => return Some(((-v / speed_m_s).max(0.0), step)),
             }
         }
         v -= step_s * law.force(&branch, xi, v).force_n.max(0.0) / mass_kg;
         xi += step_s * v;
     }
-    (0.0, MOST_STEPS)
+    None
 }

@@ -125,6 +125,16 @@ fn a_step_as_long_as_the_contact() {
     assert!(found.highest > 1.5 && found.steps < 3.0, "{found:?}");
 }
 
+/// A contact that outlasts the steps that are computed has no restitution, not one of zero.
+#[test]
+fn a_step_too_short_for_the_contact() {
+    let law = Law::from(contact_models::LinearSpring::new(1.0).unwrap());
+    // the contact lasts pi
+    assert!((stepped_restitution(&law, 1.0, 1.0, 4e-5).unwrap().mean - 1.0).abs() < 1e-4);
+    let fault = stepped_restitution(&law, 1.0, 1.0, 3e-5).unwrap_err();
+    assert!(fault.field == "step_s" && fault.allowed.contains("100000 steps"), "{fault}");
+}
+
 #[test]
 fn requirements_out_of_range() {
     let field = |wanted: Wanted| wanted.kelvin_voigt().unwrap_err().field;

@@ -255,7 +255,8 @@ impl Request {
     /// The parameters of the laws.
     ///
     /// # Errors
-    /// A quantity out of range, or a restitution that the law requested by name cannot have.
+    /// A quantity out of range, a restitution that the law requested by name cannot have, or a step so short that a contact
+    /// lasts more than 100,000 steps.
     pub fn answer(&self) -> Result<Answer, InvalidInput> {
         let Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law } = *self;
         for (field, value) in [
@@ -274,13 +275,33 @@ impl Request {
         let compression_m = compression_m.unwrap_or_else(|| step_s.map_or(1e-3, |step_s| 6.0 * speed_m_s * step_s));
         let wanted = Wanted { restitution, mass_kg, speed_m_s, compression_m }.validated()?;
         let kinds = Kind::ALL.iter().filter(|kind| law.is_none_or(|law| law == **kind));
-        let laws = kinds.map(|kind| made(*kind, &wanted, step_s, law.is_some())).collect::<Result<_, _>>()?;
+        let made = |kind: &Kind| {
+            made(*kind, &wanted, step_s, law.is_some()).map_err(|fault| of_request(*kind, &wanted, fault))
+        };
+        let laws = kinds.map(made).collect::<Result<_, _>>()?;
         Ok(Answer { restitution, reduced_mass_kg: mass_kg, speed_m_s, compression_m, step_s, laws })
     }
 }
 
 /// The allowed values of a quantity.
 pub const POSITIVE: &str = "a number greater than 0 (from 1e-30 to 1e30)";
+
+/// An error about a law in the terms of the request, from which its parameters follow.
+fn of_request(kind: Kind, wanted: &Wanted, fault: InvalidInput) -> InvalidInput {
+    let name = kind.name();
+    let (field, value) = match fault.field.first() {
+        Some("step_s") => return InvalidInput { allowed: format!("{} with the law {name}", fault.allowed), ..fault },
+        Some("damping_s_m") => ("speed_m_s", wanted.speed_m_s),
+        Some("stiffness_n_m" | "stiffness_n_m1_5" | "stiffness_n_m_n" | "damping_n_s_m") => {
+            ("compression_m", wanted.compression_m)
+        }
+        _ => return fault,
+    };
+    let InvalidInput { field: parameter, value: found, allowed, .. } = fault;
+    let found = found.map_or_else(String::new, |found| found.to_string());
+    let allowed = format!("such that {parameter} of the law {name}, now {found}, is {allowed}");
+    InvalidInput::new(field, value, allowed)
+}
 
 /// A law with the requested restitution. A law that cannot have it is an error only if it was requested by name.
 fn made(kind: Kind, wanted: &Wanted, step_s: Option<f64>, by_name: bool) -> Result<Made, contact_models::InvalidInput> {
@@ -316,11 +337,21 @@ fn for_the_step(
 ) -> Result<Option<ForStep>, contact_models::InvalidInput> {
     let at = |restitution: f64| kind.make(&Wanted { restitution, ..*wanted });
     let least = if kind == Kind::LankaraniNikravesh { LankaraniNikravesh::LEAST_RESTITUTION } else { 0.001 };
-    let (mut low, mut high) = (least, 1.0);
     let mean = |restitution: f64| Ok(stepped(&at(restitution)?.0)?.mean);
-    if mean(low)? > wanted.restitution || mean(high)? < wanted.restitution {
-        return Ok(None);
-    }
+    // The interval grows from the requested restitution, because contacts with far more damping last many more steps.
+    let mut reach = 0.01;
+    let (mut low, mut high) = loop {
+        let low = (wanted.restitution - reach).max(least);
+        let high = (wanted.restitution + reach).min(1.0);
+        let (low_is_below, high_is_above) = (mean(low)? <= wanted.restitution, mean(high)? >= wanted.restitution);
+        if low_is_below && high_is_above {
+            break (low, high);
+        }
+        if (!low_is_below && low == least) || (!high_is_above && high == 1.0) {
+            return Ok(None);
+        }
+        reach *= 2.0;
+    };
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         *(if mean(middle)? < wanted.restitution { &mut low } else { &mut high }) = middle;

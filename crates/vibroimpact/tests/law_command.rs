@@ -59,6 +59,9 @@ fn a_step_and_parameters_that_make_up_for_it() {
         assert!((range("for_the_step")[1] - 0.5).abs() < 1e-9, "{law}");
     }
     assert!(printed(&["--step-s", "0.001"]).contains("steps in contact"));
+    // With a hundredth of the restitution a contact would last a hundred times as many steps, but it need not be computed.
+    let short = printed(&["--step-s", "1e-6", "--compression-m", "1e-3", "--law", "hunt-crossley"]);
+    assert!(short.contains("gives 0.5000 on average") && !short.contains("none"), "{short}");
 }
 
 #[test]
@@ -100,9 +103,17 @@ fn errors_name_the_option() {
         arguments[2] = bad;
         assert!(refusal(&arguments).to_lowercase().contains(&format!("--restitution = {bad}")));
     }
-    // Numbers that are each in range, and a stiffness that is not.
-    let message = refusal(&[&WANTED[..], &["--compression-m", "1e-29"]].concat());
-    assert!(message.contains("stiffness"), "{message}");
+    // Numbers that are each in range, and parameters or a number of steps that are not.
+    for (options, part) in [
+        (
+            &["--compression-m", "1e-29"][..],
+            "--compression-m = 1e-29 is not allowed; it must be such that stiffness_n_m",
+        ),
+        (&["--step-s", "1e-8", "--compression-m", "1e-3"], "--step-s = 0.00000001 is not allowed; it must be longer"),
+    ] {
+        let message = refusal(&[&WANTED[..], options].concat());
+        assert!(message.contains(part), "{message}");
+    }
     let message = refusal(&[&WANTED[..], &["--law", "lankarani-nikravesh"]].concat());
     assert!(message.contains("--restitution = 0.5") && message.contains("0.663"), "{message}");
     assert!(refusal(&["law", "--restitution", "0.5"]).contains("--mass-kg"));

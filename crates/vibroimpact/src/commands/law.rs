@@ -21,7 +21,7 @@ bodies state the mass of the other body as --other-mass-kg.
 
 With a fixed step the first touch may lie anywhere within a step, so the restitution has a range. \"at the step\" is for
 semi-implicit Euler (MuJoCo and most engines). With the parameters \"for the step\" the mean of that range is the
-requested restitution. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
+requested restitution. A contact that lasts more than 100,000 steps is not computed. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
 
 /// The requested restitution and what it refers to.
 #[derive(Args)]
@@ -62,10 +62,10 @@ fn positive(text: &str) -> Result<f64, String> {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law, json } = arguments;
     let request = Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law };
-    let answer = request.answer().map_err(|fault| match fault.field.first() {
-        Some("restitution") => fault.under("--restitution"),
-        // an impossible stiffness
-        _ => fault,
+    // the fields of a request are named as its options
+    let answer = request.answer().map_err(|fault| {
+        let option = format!("--{}", fault.field.to_string().replace('_', "-"));
+        fault.under(option)
     })?;
     if json { export::json(&answer) } else { Ok(answer.to_string()) }
 }
