@@ -210,24 +210,28 @@ impl Scene {
         }
         let (structure, remainder_modes) = self.structure_from(counts, kept)?;
         let start = self.start(&structure.modes, remainder_modes)?;
-        let (striker, law) = self.striker_and_law()?;
+        let (striker, law) = self.striker_and_law(start.as_ref().map_or(0.0, |start| {
+            start.rate.iter().zip(&structure.modes).map(|(rate, mode)| rate * mode.shape).sum()
+        }))?;
         Ok(Impact { structure, remainder_modes, striker, law, start, settings })
     }
 
-    /// The striker and the law of contact as input of the solvers.
-    pub(crate) fn striker_and_law(&self) -> Result<(Striker, Law), InvalidInput> {
+    /// The striker and the law of contact as input of the solvers. The point that is struck moves at `surface_m_s` towards the
+    /// striker at the start.
+    pub(crate) fn striker_and_law(&self, surface_m_s: f64) -> Result<(Striker, Law), InvalidInput> {
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
         let striker = Striker { mass_kg, speed_m_s: self.striker.speed_m_s };
-        Ok((striker, self.law(&self.striker, None)?))
+        Ok((striker, self.law(&self.striker, striker.speed_m_s + surface_m_s, None)?))
     }
 
-    /// The law of contact for this striker; Hertz's law with these parameters where the scene says nothing of its stiffness.
-    fn law(&self, striker: &scene::Striker, hertz: Option<Hertz>) -> Result<Law, InvalidInput> {
+    /// The law of contact for this striker and speed of approach; Hertz's law with these parameters where the scene says nothing of
+    /// its stiffness.
+    fn law(&self, striker: &scene::Striker, speed_m_s: f64, hertz: Option<Hertz>) -> Result<Law, InvalidInput> {
         // trust compares the stresses of the contact with it
         self.require_yield_strength()?;
         match (&self.contact, hertz) {
             (Contact::Hertz(stiffness), Some(hertz)) if *stiffness == HertzStiffness::default() => Ok(hertz.into()),
-            (contact, _) => contact.law(striker),
+            (contact, _) => contact.law(striker, speed_m_s),
         }
     }
 
@@ -258,7 +262,7 @@ impl Scene {
             speed_m_s,
             ..scene::Striker::default()
         };
-        let law = self.law(&end, Some(drop.law))?;
+        let law = self.law(&end, speed_m_s, Some(drop.law))?;
         let vibroimpact_sim::dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
         Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
     }

@@ -155,6 +155,38 @@ fn errors_of_a_law_name_the_field_of_the_scene() {
     }
 }
 
+/// The damping that follows from a restitution depends on the speed of approach, and so on the motion of the structure.
+#[test]
+fn a_restitution_belongs_to_the_relative_speed() {
+    for law in ["viscous", "hunt-crossley"] {
+        let scene = |speed_m_s: f64, surface_m_s: f64| {
+            json!({
+                "structure": { "kind": "modal", "omega_rad_s": [0, 100, 400], "shape_at_location": [1.0, 0.5, -0.7] },
+                "striker": { "mass_kg": 0.1, "speed_m_s": speed_m_s },
+                "contact": { "law": law, "stiffness_n_m1_5": 1e9, "restitution": 0.5 },
+                "start": { "moving_modes": [{ "mode": 1, "velocity_m_s": surface_m_s }] }
+            })
+        };
+        let solved = |scene: &Value| Scene::from_value(scene).and_then(|scene| scene.impact()?.solve());
+        let seen_from = |observer: f64| solved(&scene(1.0 + observer, -observer)).unwrap().restitution.unwrap();
+        for observer in [-3.0, -1.0, -0.5, 0.7] {
+            assert!((seen_from(observer) - seen_from(0.0)).abs() < 1e-9, "{law} {observer}");
+        }
+        // an immovable stop, which the structure approaches
+        let mut stop = scene(0.0, 1.0);
+        stop["striker"] = json!({ "immovable": true, "speed_m_s": 0 });
+        assert!(solved(&stop).unwrap().restitution.is_some_and(|e| e > 0.0 && e < 1.0), "{law}");
+        let fault = solved(&scene(1.0, -1.0)).unwrap_err();
+        assert!(
+            fault.field == "contact.restitution" && fault.allowed.contains("damping_s_m takes its place"),
+            "{fault}"
+        );
+        stop["contact"] = json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.5 });
+        let fault = solved(&stop).unwrap_err();
+        assert!(fault.field == "contact.restitution" && fault.allowed.contains("damping_n_s_m"), "{fault}");
+    }
+}
+
 #[test]
 fn missing_parts_of_a_scene_are_named() {
     let mut scene = tree("pinned-beam-small-ball");

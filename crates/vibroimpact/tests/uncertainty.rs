@@ -307,7 +307,7 @@ fn few_further_modes_of_a_moving_beam_do_not_agree_by_accident() {
         "structure": { "kind": "beam", "ends": ["pinned", "guided"], "damping_ratio": 0.00165, "segments": [{
             "length_m": 2.0756, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.01547, "thickness_m": 0.01547 }] },
         "striker": { "density_kg_m3": 7800, "radius_m": 0.000777, "speed_m_s": 0.0646 },
-        "contact": { "law": "hunt-crossley", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.327 },
+        "contact": { "law": "hunt-crossley", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "damping_s_m": 42.79119737743143 },
         "location_m": 1.0378, "modes": 30, "residual_compliance": true, "start": { "gap_m": 6.66e-7, "moving_modes": [
             { "mode": 2, "location_m": 0.768, "velocity_m_s": 0.01523 }] } });
     let scene = Scene::from_value(&scene).unwrap();

@@ -168,10 +168,10 @@ impl Contact {
         let striker = Striker {
             mass_kg: Some(self.reduced_mass_kg.unwrap_or(f64::NAN)),
             radius_m: self.radius_m,
-            speed_m_s: self.approach_speed_m_s.unwrap_or(f64::NAN),
             ..Striker::default()
         };
-        self.law.law(&striker).map_err(|fault| self.own(fault))
+        let speed_m_s = self.approach_speed_m_s.unwrap_or(f64::NAN);
+        self.law.law(&striker, speed_m_s).map_err(|fault| self.own(fault))
     }
 
     /// A quantity to which a restitution or materials refer: its field here, and the value.

@@ -97,7 +97,7 @@ pub(super) enum Source<'a> {
 impl<'a> Pose<'a> {
     /// Converts a scene with a finite structure.
     pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
-        let (striker, law) = scene.striker_and_law()?;
+        let (striker, law) = scene.striker_and_law(0.0)?;
         let chosen = chooses_modes(scene);
         let settings = Settings::default();
         let tolerance = scene.tolerance.unwrap_or(if chosen { DEFAULT_TOLERANCE } else { settings.tolerance });

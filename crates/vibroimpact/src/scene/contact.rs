@@ -9,14 +9,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::json::{found, read_beside, unknown_field};
+use super::json::{found, number, read_beside, unknown_field};
 use super::materials::{HertzStiffness, Materials, in_contact};
 use super::sets::one_of_sets;
 use super::told::did_you_mean_one_of;
 use super::{Striker, fields};
 
-/// The law of the contact, which `"law"` names, with its parameters beside it. A `restitution` is that at an immovable
-/// wall, at the striker's speed, from which the law's damping follows.
+/// The law of the contact, which `"law"` names, with its parameters beside it. A `restitution` is that at an immovable wall, from
+/// which the law's damping follows. If the damping depends on the speed of approach, this is the relative speed of striker and
+/// structure at the start, where they meet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -202,14 +203,17 @@ impl Contact {
         self.materials().is_some() && !matches!(self, Contact::HuntCrossley { exponent: Some(_), .. })
     }
 
-    /// The law with its parameters, for this striker.
-    pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
-        let speed = striker.speed_m_s;
+    /// The law with its parameters, for this striker and the speed of approach to which a `restitution` belongs. The striker's own
+    /// speed does not enter.
+    pub(crate) fn law(&self, striker: &Striker, speed: f64) -> Result<Law, InvalidInput> {
+        let no_approach = (speed <= 0.0).then_some("striker and structure do not approach each other at the start");
+        let no_mass =
+            striker.immovable.then_some("it belongs to the mass of the striker, and an immovable one has none");
         let law: Result<Law, InvalidInput> = match *self {
             Contact::Hertz(stiffness) => Hertz::new(stiffness.of(striker)?).map(Law::from),
             Contact::Viscous { stiffness, damping_s_m, restitution } => {
                 let k = stiffness.of(striker)?;
-                match damping(("damping_s_m", damping_s_m), restitution)? {
+                match damping(("damping_s_m", damping_s_m), restitution, no_approach)? {
                     Damping::Given(c) => Viscous::new(k, c),
                     Damping::FromRestitution(e) => Viscous::with_restitution(k, e, speed),
                 }
@@ -227,7 +231,7 @@ impl Contact {
                 Felt::new(stiffness_n_m_n, exponent, retardation_time_s).map(Law::from)
             }
             Contact::KelvinVoigt { stiffness_n_m: k, damping_n_s_m, restitution } => {
-                match damping(("damping_n_s_m", damping_n_s_m), restitution)? {
+                match damping(("damping_n_s_m", damping_n_s_m), restitution, no_mass)? {
                     Damping::Given(c) => KelvinVoigt::new(k, c),
                     Damping::FromRestitution(e) => KelvinVoigt::with_restitution(k, e, striker.mass_kg()?),
                 }
@@ -239,7 +243,7 @@ impl Contact {
                     true => (stiffness.of(striker)?, 1.5),
                     false => stiffness.or_general((stiffness_n_m_n, exponent))?,
                 };
-                let law = match damping(("damping_s_m", damping_s_m), restitution)? {
+                let law = match damping(("damping_s_m", damping_s_m), restitution, no_approach)? {
                     Damping::Given(c) => HuntCrossley::new(k, n, c),
                     Damping::FromRestitution(e) => HuntCrossley::with_restitution(k, n, e, speed),
                 };
@@ -278,11 +282,19 @@ enum Damping {
     FromRestitution(f64),
 }
 
-/// The damping is stated directly or follows from a restitution.
-fn damping(given: (&str, Option<f64>), restitution: Option<f64>) -> Result<Damping, InvalidInput> {
+/// The damping is stated directly or follows from a restitution, unless there is a reason against that.
+fn damping(
+    given: (&str, Option<f64>),
+    restitution: Option<f64>,
+    against: Option<&str>,
+) -> Result<Damping, InvalidInput> {
     one_of_sets(&[given, ("restitution", restitution)], &[&[given.0], &["restitution"]]).map_err(in_contact)?;
-    Ok(match (given.1, restitution) {
-        (Some(damping), _) => Damping::Given(damping),
-        (None, restitution) => Damping::FromRestitution(restitution.unwrap_or(f64::NAN)),
-    })
+    match (given.1, restitution, against) {
+        (None, Some(restitution), Some(reason)) => {
+            let allowed = format!("left out, because {reason}; {} takes its place", given.0);
+            Err(in_contact(InvalidInput::new("restitution", number(restitution), allowed)))
+        }
+        (Some(damping), ..) => Ok(Damping::Given(damping)),
+        (None, restitution, _) => Ok(Damping::FromRestitution(restitution.unwrap_or(f64::NAN))),
+    }
 }
