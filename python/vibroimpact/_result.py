@@ -35,7 +35,7 @@ class Impact(Result):
 
     @property
     def restitution(self) -> float | None:
-        """Speed of separation over speed of approach; ``None`` without a rebound."""
+        """Speed of separation over speed of approach, 0 in sustained contact; ``None`` if the impact did not end."""
         return self["restitution"]  # type: ignore[no-any-return]
 
     @property

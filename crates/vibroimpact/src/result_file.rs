@@ -40,7 +40,7 @@ pub struct ResultFile {
     /// The reason why the computation stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "word")]
     pub stopped_by: Option<StopReason>,
-    /// Net restitution; null where the impact did not end in a rebound from an approach.
+    /// Net restitution, 0 in sustained contact; null where the bodies did not approach each other or the computation stopped.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution: the sum of what can be estimated; null where nothing can.
     pub restitution_uncertainty: Option<f64>,

@@ -187,6 +187,22 @@ fn a_restitution_belongs_to_the_relative_speed() {
     }
 }
 
+/// Without a separation the restitution is 0, whatever rounding is left of the motion, on every structure.
+#[test]
+fn sustained_contact_has_a_restitution_of_zero() {
+    let mut scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [0], "shape_at_location": [1e6] },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+        "contact": { "law": "kelvin-voigt", "stiffness_n_m": 1e7, "restitution": 0.4 }
+    });
+    let answer = |scene: &Value| Scene::from_value(scene).unwrap().answer().unwrap();
+    let found = answer(&scene);
+    assert_eq!((found.outcome, found.restitution), ("sustained", Some(0.0)));
+    scene = tree("infinite-beam");
+    let found = answer(&scene);
+    assert_eq!((found.outcome, found.restitution), ("sustained", Some(0.0)));
+}
+
 #[test]
 fn missing_parts_of_a_scene_are_named() {
     let mut scene = tree("pinned-beam-small-ball");

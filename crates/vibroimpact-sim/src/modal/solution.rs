@@ -70,7 +70,7 @@ pub struct Solution {
     /// The outcome.
     pub outcome: Outcome,
     /// Net restitution: relative speed of separation over that of approach, both of the rigid-body motions
-    /// (for a structure without rigid-body modes: of the striker alone). `None` unless the bodies approached
+    /// (for a structure without rigid-body modes: of the striker alone). 0 in sustained contact. `None` unless the bodies approached
     /// each other, fast enough for the ratio to be a number, and the impact ended.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution, from two or three coarser solutions; `None` if not requested.

@@ -446,7 +446,12 @@ impl Solver {
         let before = self.approach(striker, start);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_moved());
-        let ratio = (run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k])) / before;
+        let separation = match run.outcome {
+            // the bodies stay together, whatever is left of their motion
+            Outcome::Sustained => 0.0,
+            _ => run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k]),
+        };
+        let ratio = separation / before;
         // the ratio to an approach of 1e-310 m/s overflows on a structure that moves
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
     }

@@ -316,7 +316,8 @@ impl Scene {
 
     /// The solution for an infinite structure as an answer.
     pub(crate) fn infinite_answer(&self, solution: &infinite::Solution) -> Answer {
-        let restitution = solution.rebound_ratio();
+        let sustained = solution.outcome == Outcome::Sustained;
+        let restitution = if sustained { Some(0.0) } else { solution.rebound_ratio() };
         // relative to the change of speed
         let uncertainty = restitution
             .zip(solution.relative_uncertainty)
@@ -334,7 +335,7 @@ impl Scene {
             stopped_by: solution.outcome.stopped_by(),
             restitution,
             sub_impact_count: Some(solution.sub_impacts.len()),
-            settled: settled || solution.outcome == Outcome::Sustained,
+            settled: settled || sustained,
             cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
             ..Answer::new(Model::InfiniteBeam, super::DEFAULT_TOLERANCE, known, reason)
         }

@@ -69,7 +69,7 @@ pub struct Answer {
     /// The reason why it stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "crate::stop_word::word")]
     pub stopped_by: Option<StopReason>,
-    /// Net restitution; null where the impact did not end in a rebound from an approach.
+    /// Net restitution, 0 in sustained contact; null where the bodies did not approach each other or the computation stopped.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
     pub restitution_uncertainty: Option<f64>,
