@@ -324,6 +324,31 @@ fn shapes_of_bodies_that_pass_through_zero_keep_their_sign() {
     assert!((derivative.value / reference - 1.0).abs() < 1e-5, "{derivative:?} {reference}");
 }
 
+/// The name of a body may contain what separates the steps of a path.
+#[test]
+fn bodies_whose_names_hold_dots_have_derivatives() {
+    let of = |name: &str| {
+        let scene = json!({
+            "bodies": { name: { "kind": "mass", "mass_kg": 0.1, "position_m": 0.01 } },
+            "contacts": [{ "name": "floor", "between": [{ "body": name }, "ground"],
+                           "law": "hertz", "stiffness_n_m1_5": 1e9 }],
+            "gravity_m_s2": 9.81, "end_s": 0.08
+        });
+        let scene = AssemblyScene::from_value(&scene).unwrap();
+        let all = scene.sensitivity(&[]).unwrap().table;
+        assert!(all.left_out.is_empty(), "{:?}", all.left_out);
+        let field = format!("bodies.{name}.mass_kg");
+        let by_mass = all.of("contacts.floor.intervals[0].impulse_n_s", &field).unwrap();
+        assert_eq!(scene.sensitivity(std::slice::from_ref(&field)).unwrap().table.fields[0].path, field);
+        (all.fields.len(), by_mass)
+    };
+    let plain = of("ball");
+    assert!(plain.1.value > 0.0);
+    for name in ["ball no. 2", "a[0]", "a.b[x"] {
+        assert_eq!(of(name), plain, "{name}");
+    }
+}
+
 /// The contacts of a scene of bodies with a number changed, solved to 1e-13.
 fn contacts(tree: &Value, pointer: &str, value: f64) -> Value {
     let mut tree = tree.clone();

@@ -11,6 +11,9 @@ use super::told::counted;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath(Path);
 
+/// Names of numbers that are settings.
+const SETTINGS: [&str; 6] = ["version", "modes", "mode", "tolerance", "bending_modes", "axial_modes"];
+
 impl FieldPath {
     /// Reads a path; `None` for an invalid one.
     pub(crate) fn parse(text: &str) -> Option<FieldPath> {
@@ -31,6 +34,11 @@ impl FieldPath {
             }
         }
         Some(FieldPath(steps.into_iter().collect()))
+    }
+
+    /// The field at these steps. Unlike in a text, the name of a body may contain dots and brackets.
+    pub(crate) fn of(steps: Path) -> FieldPath {
+        FieldPath(steps)
     }
 
     /// The value at this path.
@@ -93,6 +101,11 @@ impl FieldPath {
             }
         }
         self.set(tree, value)
+    }
+
+    /// Whether this is a setting of the solution and not a part of the problem, which cannot vary continuously.
+    pub(crate) fn is_setting(&self) -> bool {
+        self.0.last().is_some_and(|name| SETTINGS.contains(&name))
     }
 
     /// Whether the other field is this one or part of it.

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use invalid_input::Path;
 use serde_json::Value;
 use vibroimpact_sim::modal::{Derivative, Stencil};
 
@@ -48,27 +49,25 @@ impl<T> Neighbours<T> {
     /// Computes the neighbours, and checks that they differ only continuously.
     fn of(tree: &Value, field: &str, by: &Posing<T>) -> Result<Neighbours<T>, InvalidInput> {
         let named = |value: &str, allowed: String| InvalidInput::new("--by", format!("{value} of {field}"), allowed);
-        let path = FieldPath::parse(field).ok_or_else(|| {
+        let numbers = all_numbers(tree).0;
+        let number_of_scene = numbers.iter().find(|number| number.to_string() == field).cloned();
+        let path = number_of_scene.or_else(|| FieldPath::parse(field)).ok_or_else(|| {
             InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
         })?;
         let known = || {
-            let known =
-                format!("the path of a number that the scene states, one of {}", all_numbers(tree).0.join(", "));
+            let numbers = numbers.iter().map(FieldPath::to_string).collect::<Vec<_>>().join(", ");
+            let known = format!("the path of a number that the scene states, one of {numbers}");
             let meant = did_you_mean_one_of(field, &known);
             known + &meant
         };
         let stated = path.get(tree).ok_or_else(|| InvalidInput::new("--by", quote(&field.into()), known()))?;
         let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
-        let found = Neighbours::beside(tree, (field, &path, value), by);
+        let found = Neighbours::beside(tree, (&path, value), by);
         found.map_err(|why| named(&number(value), format!("a field that can vary continuously ({why})")))
     }
 
     /// The same for a number of the scene, or the reason why it has no neighbours.
-    fn beside(
-        tree: &Value,
-        (field, path, value): (&str, &FieldPath, f64),
-        by: &Posing<T>,
-    ) -> Result<Neighbours<T>, String> {
+    fn beside(tree: &Value, (path, value): (&FieldPath, f64), by: &Posing<T>) -> Result<Neighbours<T>, String> {
         let steps: &[f64] = if value == 0.0 { &STEPS_AT_ZERO } else { &STEPS.map(|step| step * value.abs()) };
         let here = (by.sides)(tree);
         let mut reason = String::new();
@@ -99,7 +98,7 @@ impl<T> Neighbours<T> {
                     Ok(()) => {
                         // the value is an integer or a float as in the file, and so are its neighbours
                         let offsets = places.map(|place| (value + place * step) - value);
-                        return Ok(Neighbours { field: field.to_owned(), value, offsets, at });
+                        return Ok(Neighbours { field: path.to_string(), value, offsets, at });
                     }
                     Err(why) => (reason, differs) = (why.to_owned(), true),
                 }
@@ -199,47 +198,43 @@ pub(super) fn around<T>((tree, fields): (&Value, &[String]), by: &Posing<T>) -> 
     }
     let (numbers, mut left_out) = all_numbers(tree);
     let mut near = Vec::new();
-    for field in numbers {
-        let Some(path) = FieldPath::parse(&field) else { continue };
+    for path in numbers {
         let Some(value) = path.get(tree).and_then(Value::as_f64) else { continue };
-        match Neighbours::beside(tree, (&field, &path, value), by) {
+        match Neighbours::beside(tree, (&path, value), by) {
             Ok(found) => near.push(found),
-            Err(reason) => left_out.push(LeftOut { path: field, reason }),
+            Err(reason) => left_out.push(LeftOut { path: path.to_string(), reason }),
         }
     }
     Ok(Around { near, left_out, named: false })
 }
 
 /// Every number of a scene that may vary continuously, and the lists that are too long to be included.
-fn all_numbers(tree: &Value) -> (Vec<String>, Vec<LeftOut>) {
+fn all_numbers(tree: &Value) -> (Vec<FieldPath>, Vec<LeftOut>) {
     let (mut found, mut left_out) = (Vec::new(), Vec::new());
-    let mut open = vec![(String::new(), tree)];
+    let mut open = vec![(Path::default(), tree)];
     while let Some((path, value)) = open.pop() {
         match value {
             Value::Object(entries) => {
                 for (key, value) in entries.iter().rev() {
-                    let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                    open.push((path, value));
+                    open.push((Path::from(key.as_str()).within(path.clone()), value));
                 }
             }
             Value::Array(list) if list.len() > LONG && list.iter().any(Value::is_number) => {
                 let reason = format!("a list of {} numbers; --by {path}[0] and so on selects some of them", list.len());
-                left_out.push(LeftOut { path, reason });
+                left_out.push(LeftOut { path: path.to_string(), reason });
             }
             Value::Array(list) => {
                 for (i, value) in list.iter().enumerate().rev() {
-                    open.push((format!("{path}[{i}]"), value));
+                    open.push(((path.clone(), i).into(), value));
                 }
             }
-            Value::Number(_) if !CHOICES.contains(&path.rsplit('.').next().unwrap_or_default()) => found.push(path),
+            Value::Number(_) => found.push(FieldPath::of(path)),
             _ => {}
         }
     }
+    found.retain(|path| !path.is_setting());
     (found, left_out)
 }
 
 /// Lists of more numbers are left out, unless the user names some of them.
 const LONG: usize = 20;
-
-/// Numbers that are settings of the solution and not part of the problem.
-const CHOICES: [&str; 6] = ["version", "modes", "mode", "tolerance", "bending_modes", "axial_modes"];
