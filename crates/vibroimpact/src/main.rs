@@ -10,6 +10,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
+use commands::products::Unwritten;
 use commands::sweep::NoPointSolved;
 use commands::voice::Voice;
 use commands::{
@@ -134,7 +135,9 @@ fn main() -> ExitCode {
         // a reader that closes the pipe early is not an error
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
-            if let Some(NoPointSolved { printed, .. }) = failure.downcast_ref() {
+            let no_point = failure.downcast_ref().map(|NoPointSolved { printed, .. }| printed);
+            let unwritten = failure.downcast_ref().map(|Unwritten { printed, .. }| printed);
+            if let Some(printed) = no_point.or(unwritten) {
                 // the results are complete, and are printed as usual
                 let _ = print(printed);
             }

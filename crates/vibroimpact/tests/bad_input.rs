@@ -268,6 +268,61 @@ fn nothing_that_exists_is_replaced_without_force() {
 }
 
 #[test]
+fn options_that_would_replace_the_file_of_another_are_refused() {
+    let quick = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
+    let folder = folder(&[("scene.json", &quick), ("file", "mine")]);
+    fs::write(folder.path().join("drop.toml"), stdout(&run(folder.path(), &["init", "--kind", "bodies", "-"])))
+        .unwrap();
+    let simulate = ["simulate", "scene.json"];
+    for (command, options, names) in [
+        (&simulate[..], &["--plot", "a.svg", "--animate", "./b/../a.svg"][..], ["--animate", "--plot = a.svg"]),
+        (&simulate, &["--out", "o", "--plot", "o/impact.svg"], ["--plot", "--out = o"]),
+        (&simulate, &["--out", "o", "--report", "o/report.html", "--force"], ["--report", "--out = o"]),
+        (&["simulate", "drop.toml"], &["--report", "o/report.html", "--out", "o/"], ["--report", "--out = o/"]),
+        (&["demo"], &["--out", "a.svg", "--animate", "a.svg"], ["--animate", "--out = a.svg"]),
+        (&["infinite-beam", "--s", "1"], &["--out", "o", "--plot", "o/x.svg"], ["--plot", "--out = o"]),
+        (
+            &["orbit", "drop.toml", "--over", "gravity_m_s2", "--to", "9"],
+            &["--csv", "a.svg", "--plot", "a.svg"],
+            ["--csv", "--plot = a.svg"],
+        ),
+    ] {
+        let message = refused(folder.path(), &[command, options].concat());
+        let [second, first] = names;
+        assert!(message.starts_with(&format!("error: {second} = ")) && message.contains(first), "{message}");
+    }
+    // a file in place of a folder
+    for command in [&simulate[..], &["simulate", "drop.toml"], &["infinite-beam", "--s", "1"]] {
+        let message = refused(folder.path(), &[command, &["--out", "file"]].concat());
+        assert!(message.contains("--out = file is not allowed; it must be a folder"), "{message}");
+    }
+}
+
+/// A file that cannot be written does not discard what was computed.
+#[test]
+fn a_result_is_printed_even_if_its_files_cannot_be_written() {
+    let quick = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
+    let folder = folder(&[("scene.json", &quick), ("file", "mine")]);
+    fs::write(folder.path().join("drop.toml"), stdout(&run(folder.path(), &["init", "--kind", "bodies", "-"])))
+        .unwrap();
+    for command in [
+        &["simulate", "scene.json"][..],
+        &["simulate", "drop.toml"],
+        &["infinite-beam", "--s", "1"],
+        &["modes", "scene.json"],
+        &["compare", "scene.json"],
+        &["sensitivity", "scene.json", "--by", "striker.mass_kg"],
+    ] {
+        let printed = |more: &[&str]| run(folder.path(), &[command, &["--json"], more].concat());
+        let output = printed(&["--plot", "file/a.svg"]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{command:?}: {message}");
+        assert!(message.contains("cannot write to file/a.svg"), "{message}");
+        assert_eq!(output.stdout, printed(&[]).stdout, "{command:?}");
+    }
+}
+
+#[test]
 fn a_sweep_refuses_a_folder_of_something_else() {
     let sweep = format!(
         r#"{{ "scene": {}, "vary": [{{ "field": "striker.speed_m_s", "values": [1, 2] }}] }}"#,

@@ -9,7 +9,7 @@ use vibroimpact::export::{Failure, Files};
 use vibroimpact::text::quantity;
 use vibroimpact::vibroimpact_sim::assembly::Interval;
 
-use super::products::Products;
+use super::products::{Products, with_files};
 use super::sweep::stop_on_signal;
 use super::voice::{is_quiet, signature, tell};
 
@@ -35,20 +35,20 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     };
     let found = scene.simulate_with(wanted)?;
     progress.finish();
-    if let Some(files) = files {
-        files.close()?;
-    }
     let summary = Summary::new(&found).listing(intervals);
     let printed = match products.json {
         true => summary.json(scene)?,
         false => format!("{headline}\n\n{}{}", assembly::result(&summary), signature()),
     };
-    let told = products.write(
-        || assembly::picture(&headline, &found),
-        |figure| assembly::report(&headline, scene, &summary, figure),
-        || Ok(Files::of(assembly::files(&headline, scene, &found, &summary)?).beside(&IntervalFiles::NAMES)),
-    )?;
-    Ok(printed + &told)
+    with_files(printed, |printed| {
+        files.map_or(Ok(()), IntervalFiles::close)?;
+        products.write(
+            printed,
+            || assembly::picture(&headline, &found),
+            |figure| assembly::report(&headline, scene, &summary, figure),
+            || Ok(Files::of(assembly::files(&headline, scene, &found, &summary)?).beside(&IntervalFiles::NAMES)),
+        )
+    })
 }
 
 /// Progress on the standard error: a bar on a terminal, a line from time to time elsewhere.

@@ -5,7 +5,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::{model, pictures};
 
 use super::headline;
-use super::products::Picture;
+use super::products::{Picture, with_files};
 use super::source::SceneSource;
 use super::voice::signature;
 
@@ -60,8 +60,10 @@ pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Fail
 /// Runs `compare` and returns the text to print.
 pub fn compare(CompareArguments { scene, json, picture }: CompareArguments) -> Result<String, Failure> {
     let scene = scene.impact()?;
-    picture.require_room()?;
+    picture.require_room(&[])?;
     let comparison = scene.compare()?;
     let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) + &signature() };
-    Ok(printed + &picture.draw(json, || Ok(pictures::of_comparison(&headline(&scene)?, &comparison)))?)
+    with_files(printed, |printed| {
+        picture.draw(printed, json, || Ok(pictures::of_comparison(&headline(&scene)?, &comparison)))
+    })
 }

@@ -85,8 +85,7 @@ fn toml_file(name: &str) -> Result<PathBuf, String> {
 
 /// Runs `demo` and returns the text to print.
 pub fn demo(DemoArguments { changes, extent, products }: DemoArguments) -> Result<String, Failure> {
-    products.require_room()?;
-    extent.require_room(&products)?;
+    products.require_room(&[extent.output()])?;
     let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?, "the built-in scene")?.any()?;
     let json = products.json;
     let printed = simulate::answer(scene, extent, &products)?;
@@ -109,6 +108,7 @@ pub fn init(InitArguments { file, kind, force }: InitArguments) -> Result<String
     let name = printable(&file.display().to_string()).replace('\n', " ");
     // the comments refer to the file by its name
     let scene = kind.scene().replace("impact.toml", &name);
-    let told = write_single(&file, scene.as_bytes(), false)?;
+    let mut told = String::new();
+    write_single(&mut told, &file, scene.as_bytes(), false)?;
     Ok(if told.is_empty() { told } else { format!("{told}  solve it with: vibroimpact simulate {name}\n") })
 }

@@ -8,7 +8,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::identify::{self, Data, Free, Request};
 
 use super::headline;
-use super::products::Picture;
+use super::products::{Picture, with_files};
 use super::source::Changes;
 use super::voice::signature;
 
@@ -66,12 +66,14 @@ pub struct Arguments {
 /// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { data, scene, changes, free, starts, level, candidates, json, picture } = arguments;
-    picture.require_room()?;
+    picture.require_room(&[])?;
     let scene = changes.draft(&scene)?.impact()?;
     let data = Data::read(&data)?;
     let candidates = candidates.map(|path| Data::read_candidates(&path)).transpose()?;
     let free: Vec<Free> = free.iter().map(|text| Free::parse(text)).collect::<Result<_, InvalidInput>>()?;
     let found = identify::identify(&scene, &data, &free, &Request { level, starts, candidates })?;
     let printed = if json { export::json(&found)? } else { identify::text(&found) + &signature() };
-    Ok(printed + &picture.draw(json, || Ok(identify::picture(&headline(&scene)?, &data, &found)))?)
+    with_files(printed, |printed| {
+        picture.draw(printed, json, || Ok(identify::picture(&headline(&scene)?, &data, &found)))
+    })
 }

@@ -10,7 +10,7 @@ use vibroimpact::trust::{Check, trust_text};
 use vibroimpact::vibroimpact_sim::infinite::{Scale, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
-use super::products::Products;
+use super::products::{Products, with_files};
 use super::source::Changes;
 use super::voice::signature;
 
@@ -70,14 +70,14 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
                 let allowed = "infinite-beam; vibroimpact simulate solves scenes of every kind".to_owned();
                 return Err(InvalidInput::new(["structure", "kind"], kind, allowed).into());
             }
-            products.require_room()?;
+            products.require_room(&[])?;
             let (scale, solution) = scene.solve_infinite()?;
             let json = export::json(&Summary::new(&solution, Some(&scale)))?;
             of_scene(&scene, (&scale, &solution), &[], None, json, &products)
         }
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
-            products.require_room()?;
+            products.require_room(&[])?;
             let solution = solve(Structure::Beam, s, &Settings::default())?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;
@@ -127,12 +127,14 @@ fn result(
         format!("{headline}\n\n{}{}{}", text(&summary), trust_text(trust), signature())
     };
     let figure = || picture(headline, solution, scale, until);
-    let told = products.write(
-        figure,
-        |figure| report::of_infinite_impact(headline, scene, &summary, figure),
-        || files(json, solution, scale, until, &figure()),
-    )?;
-    Ok(printed + &told)
+    with_files(printed, |printed| {
+        products.write(
+            printed,
+            figure,
+            |figure| report::of_infinite_impact(headline, scene, &summary, figure),
+            || files(json, solution, scale, until, &figure()),
+        )
+    })
 }
 
 fn list(count: usize, json: bool) -> Result<String, Failure> {

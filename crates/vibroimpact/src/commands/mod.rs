@@ -11,14 +11,13 @@ pub mod modes;
 pub mod net;
 pub mod orbit;
 pub mod predictability;
+pub mod products;
 pub mod sensitivity;
 pub mod shell;
 pub mod simulate;
 pub mod source;
 pub mod sweep;
 pub mod voice;
-
-mod products;
 
 use vibroimpact::export::Failure;
 use vibroimpact::scene::MOST_MODES;

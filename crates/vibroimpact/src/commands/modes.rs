@@ -6,7 +6,7 @@ use vibroimpact::scene::Structure;
 use vibroimpact::summary::ModeTable;
 use vibroimpact::{pictures, text};
 
-use super::products::Picture;
+use super::products::{Picture, with_files};
 use super::source::SceneSource;
 use super::{mode_count, of_option};
 
@@ -40,7 +40,7 @@ pub struct Arguments {
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
     let scene = scene.impact()?;
-    picture.require_room()?;
+    picture.require_room(&[])?;
     let count = count.unwrap_or(match &scene.structure {
         Structure::Modal(listed) => COUNT.min(listed.omega_rad_s.len()),
         _ => COUNT,
@@ -48,5 +48,5 @@ pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<Strin
     let modes = scene.mode_shapes(count).map_err(of_option("--count"))?;
     let converged = scene.converged_modes(count).map_err(of_option("--count"))?;
     let printed = if json { export::json(&ModeTable::new(&modes, converged))? } else { text::modes(&modes, converged) };
-    Ok(printed + &picture.draw(json, || Ok(pictures::modes(&scene, count)?))?)
+    with_files(printed, |printed| picture.draw(printed, json, || Ok(pictures::modes(&scene, count)?)))
 }

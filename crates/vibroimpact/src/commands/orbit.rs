@@ -9,7 +9,7 @@ use vibroimpact::export::Failure;
 use vibroimpact::orbit::{self, Over};
 use vibroimpact::vibroimpact_sim::assembly::OrbitSettings;
 
-use super::products::{Picture, write_single};
+use super::products::{Picture, with_files, write_single};
 use super::source::SceneSource;
 use super::sweep::stop_on_signal;
 use super::voice::signature;
@@ -75,8 +75,7 @@ pub struct Arguments {
 
 /// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
-    arguments.picture.require_room()?;
-    arguments.picture.require_room_for("--csv", arguments.csv.as_deref())?;
+    arguments.picture.require_room(&[("--csv", arguments.csv.as_deref())])?;
     let scene = arguments.scene.bodies()?;
     let headline = assembly::headline(&scene, &scene.pose()?);
     let settings = OrbitSettings {
@@ -96,13 +95,14 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     };
     let over = Over { field, from: arguments.from, to, step: arguments.step, doublings: arguments.doublings };
     let branch = scene.orbit_branch(&over, &settings, &|| stop.load(Ordering::Relaxed))?;
-    let mut printed = match arguments.json {
+    let printed = match arguments.json {
         true => branch.json(&scene)?,
         false => format!("{headline}\n\n{}{}", branch.text(), signature()),
     };
-    if let Some(path) = &arguments.csv {
-        printed += &write_single(path, &branch.csv()?, arguments.json)?;
-    }
-    printed += &arguments.picture.draw(arguments.json, || Ok(orbit::picture(&headline, &branch)))?;
-    Ok(printed)
+    with_files(printed, |printed| {
+        if let Some(path) = &arguments.csv {
+            write_single(printed, path, &branch.csv()?, arguments.json)?;
+        }
+        arguments.picture.draw(printed, arguments.json, || Ok(orbit::picture(&headline, &branch)))
+    })
 }

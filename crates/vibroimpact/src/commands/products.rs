@@ -1,6 +1,6 @@
 //! Forms of the results of the commands: printed text, a folder of files, a figure, a report.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use vibroimpact::InvalidInput;
@@ -42,15 +42,15 @@ pub struct Picture {
     force: bool,
 }
 
-impl Picture {
-    /// Rejects options that would replace existing files, before anything is solved.
-    pub fn require_room(&self) -> Result<(), InvalidInput> {
-        require_free("--plot", self.plot.as_deref(), self.force)
-    }
+/// An option that names a file or a folder to write, and the path if it is given.
+pub type Output<'a> = (&'static str, Option<&'a Path>);
 
-    /// The same for another file, which an option names.
-    pub fn require_room_for(&self, option: &str, path: Option<&Path>) -> Result<(), InvalidInput> {
-        require_free(option, path, self.force)
+impl Picture {
+    /// Rejects options, these and other ones, that would replace existing files or each other's, before anything is solved.
+    pub fn require_room(&self, others: &[Output]) -> Result<(), InvalidInput> {
+        let outputs = [&[("--plot", self.plot.as_deref())], others].concat();
+        require_apart(&outputs)?;
+        outputs.iter().try_for_each(|(option, path)| require_free(option, *path, self.force))
     }
 
     /// Rejects a figure where there is none to draw.
@@ -59,11 +59,16 @@ impl Picture {
         self.plot.as_ref().map_or(Ok(()), path)
     }
 
-    /// Draws the figure, if it is requested, and returns a line about it for the text; empty if the result is JSON.
-    pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
+    /// Draws the figure, if it is requested, and adds a line about it to the text; none if the result is JSON.
+    pub fn draw(
+        &self,
+        printed: &mut String,
+        json: bool,
+        figure: impl FnOnce() -> Result<Figure, Failure>,
+    ) -> Result<(), Failure> {
         match &self.plot {
-            Some(path) => write_single(path, &picture(path, &figure()?)?, json),
-            None => Ok(String::new()),
+            Some(path) => write_single(printed, path, &picture(path, &figure()?)?, json),
+            None => Ok(()),
         }
     }
 }
@@ -71,6 +76,12 @@ impl Picture {
 /// Whether anything has this name, even a broken link.
 fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
+}
+
+/// Rejects the name of a file in place of a folder.
+pub fn require_folder(option: &str, path: &Path) -> Result<(), InvalidInput> {
+    let ok = path.is_dir() || !is_there(path);
+    InvalidInput::unless(ok, option, path.display().to_string(), "a folder, because there is a file of this name")
 }
 
 /// Rejects the name of an existing file.
@@ -82,6 +93,35 @@ pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<()
         }
         _ => Ok(()),
     }
+}
+
+/// Rejects options of which one names the file of another, or a file in its folder.
+fn require_apart(outputs: &[Output]) -> Result<(), InvalidInput> {
+    let given: Vec<(&str, &Path)> = outputs.iter().filter_map(|(option, path)| Some((*option, (*path)?))).collect();
+    for (i, (option, path)) in given.iter().enumerate() {
+        let place = normalised(path);
+        let meets = |other: &Path| place.starts_with(other) || other.starts_with(&place);
+        if let Some((other, there)) = given[..i].iter().find(|(_, other)| meets(&normalised(other))) {
+            let allowed = format!("apart from {other} = {}, because one would replace the other", there.display());
+            return Err(InvalidInput::new(*option, path.display().to_string(), allowed));
+        }
+    }
+    Ok(())
+}
+
+/// The absolute path without `.` and `..`, which need not exist.
+fn normalised(path: &Path) -> PathBuf {
+    let mut found = PathBuf::new();
+    for component in std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                found.pop();
+            }
+            step => found.push(step),
+        }
+    }
+    found
 }
 
 /// A file name with the ending of a picture.
@@ -97,34 +137,29 @@ fn page_file(name: &str) -> Result<PathBuf, String> {
 }
 
 impl Products {
-    /// Whether files that exist may be replaced.
-    pub fn may_replace(&self) -> bool {
-        self.force
+    /// Rejects options, these and other ones, that would replace existing files or each other's, before anything is solved.
+    pub fn require_room(&self, others: &[Output]) -> Result<(), InvalidInput> {
+        if let Some(folder) = &self.out {
+            require_folder("--out", folder)?;
+            if let Some(name) = Files::NAMES.into_iter().find(|name| !self.force && is_there(&folder.join(name))) {
+                let allowed = format!("a folder without {name}, which this one contains; --force replaces it");
+                return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
+            }
+        }
+        let files = [&[("--plot", self.plot.as_deref()), ("--report", self.report.as_deref())], others].concat();
+        require_apart(&[&[("--out", self.out.as_deref())], &files[..]].concat())?;
+        files.iter().try_for_each(|(option, path)| require_free(option, *path, self.force))
     }
 
-    /// Rejects options that would replace existing files, before anything is solved.
-    pub fn require_room(&self) -> Result<(), InvalidInput> {
-        if let Some(folder) = &self.out
-            && !self.force
-            && let Some(name) = Files::NAMES.into_iter().find(|name| is_there(&folder.join(name)))
-        {
-            let allowed = format!("a folder without {name}, which this one contains; --force replaces it");
-            return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
-        }
-        for (option, path) in [("--plot", &self.plot), ("--report", &self.report)] {
-            require_free(option, path.as_deref(), self.force)?;
-        }
-        Ok(())
-    }
-
-    /// Writes the requested files and returns lines about them for the text; empty if the result is JSON. All files are completed
-    /// in memory before the first one is written.
+    /// Writes the requested files and adds lines about them to the text; none if the result is JSON. All files are completed in
+    /// memory before the first one is written.
     pub fn write(
         &self,
+        printed: &mut String,
         figure: impl FnOnce() -> Figure,
         report: impl FnOnce(&Figure) -> std::io::Result<Report>,
         files: impl FnOnce() -> Result<Files, Failure>,
-    ) -> Result<String, Failure> {
+    ) -> Result<(), Failure> {
         let mut single = Vec::new();
         if self.plot.is_some() || self.report.is_some() {
             let figure = figure();
@@ -135,11 +170,8 @@ impl Products {
                 single.push((path, report(&figure)?.html().into_bytes()));
             }
         }
-        let mut told = self.write_folder(files)?;
-        for (path, content) in single {
-            told += &write_single(path, &content, self.json)?;
-        }
-        Ok(told)
+        *printed += &self.write_folder(files)?;
+        single.iter().try_for_each(|(path, content)| write_single(printed, path, content, self.json))
     }
 
     /// Whether pictures or tables of the motion in time are requested.
@@ -169,9 +201,32 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
     Ok(figure.bytes(Format::of(path).ok_or(Format::ENDINGS)?)?)
 }
 
-/// Writes one file and returns a line about it for the text; empty if the result is JSON.
-pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
+/// A result that was computed, but not written completely.
+#[derive(Debug, thiserror::Error)]
+#[error("{failure}")]
+pub struct Unwritten {
+    failure: Failure,
+    /// The text that is printed nevertheless.
+    pub printed: String,
+}
+
+/// Writes the files of a result, and returns the text to print with the lines about them. If a file cannot be written, the result
+/// is printed nevertheless.
+pub fn with_files(
+    mut printed: String,
+    write: impl FnOnce(&mut String) -> Result<(), Failure>,
+) -> Result<String, Failure> {
+    match write(&mut printed) {
+        Ok(()) => Ok(printed),
+        Err(failure) => Err(Unwritten { failure, printed }.into()),
+    }
+}
+
+/// Writes one file and adds a line about it to the text; none if the result is JSON.
+pub fn write_single(printed: &mut String, path: &Path, content: &[u8], json: bool) -> Result<(), Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
-    let silent = json || is_quiet();
-    Ok(if silent { String::new() } else { format!("  wrote {}\n", printable(&path.display().to_string())) })
+    if !json && !is_quiet() {
+        *printed += &format!("  wrote {}\n", printable(&path.display().to_string()));
+    }
+    Ok(())
 }

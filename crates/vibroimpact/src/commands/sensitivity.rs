@@ -6,7 +6,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::sensitivity;
 
 use super::headline;
-use super::products::Picture;
+use super::products::{Picture, with_files};
 use super::source::SceneSource;
 
 pub const EXAMPLES: &str = "Examples:
@@ -42,7 +42,7 @@ pub struct Arguments {
 
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, by, of, json, picture }: Arguments) -> Result<String, Failure> {
-    picture.require_room()?;
+    picture.require_room(&[])?;
     let (printed, figure) = match scene.any()? {
         AnyScene::Impact(scene) => {
             let found = scene.sensitivity(&by)?;
@@ -60,5 +60,5 @@ pub fn run(Arguments { scene, by, of, json, picture }: Arguments) -> Result<Stri
             (printed, sensitivity::figure(&found.table, of)?)
         }
     };
-    Ok(printed + &picture.draw(json, || Ok(figure))?)
+    with_files(printed, |printed| picture.draw(printed, json, || Ok(figure)))
 }

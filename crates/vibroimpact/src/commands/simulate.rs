@@ -15,7 +15,7 @@ use super::bodies;
 use super::headline;
 use super::heartbeat::watched;
 use super::infinite_beam;
-use super::products::{Products, require_free, write_single};
+use super::products::{Output, Products, with_files, write_single};
 use super::source::SceneSource;
 use super::voice::signature;
 
@@ -62,9 +62,9 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Rejects the name of an existing file, before anything is solved.
-    pub fn require_room(&self, products: &Products) -> Result<(), InvalidInput> {
-        require_free("--animate", self.animate.as_deref(), products.may_replace())
+    /// The file that it requests.
+    pub fn output(&self) -> Output<'_> {
+        ("--animate", self.animate.as_deref())
     }
 
     /// The error for a result without a course in time, which has neither histories nor an animation.
@@ -110,8 +110,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, Failure> {
     let scene = scene.any()?;
-    products.require_room()?;
-    extent.require_room(&products)?;
+    products.require_room(&[extent.output()])?;
     answer(scene, extent, &products)
 }
 
@@ -167,16 +166,18 @@ fn in_modes(
     let until_s = resolved.until_s(extent.until);
     let animation = animation(scene, &headline, resolved, extent, until_s)?;
     let figure = || pictures::impact(&headline, resolved, until_s);
-    let told = products.write(
-        figure,
-        |figure| report::of_impact(&headline, scene, &modelled, trust, resolved, figure),
-        || Files::new(json, resolved, until_s, &figure()),
-    )?;
-    let shown = match (&extent.animate, animation) {
-        (Some(path), Some(animation)) => write_single(path, animation.as_bytes(), products.json)?,
-        _ => String::new(),
-    };
-    Ok(printed + &told + &shown)
+    with_files(printed, |printed| {
+        products.write(
+            printed,
+            figure,
+            |figure| report::of_impact(&headline, scene, &modelled, trust, resolved, figure),
+            || Files::new(json, resolved, until_s, &figure()),
+        )?;
+        match (&extent.animate, animation) {
+            (Some(path), Some(animation)) => write_single(printed, path, animation.as_bytes(), products.json),
+            _ => Ok(()),
+        }
+    })
 }
 
 /// The animation, if it is requested.
@@ -219,10 +220,12 @@ fn without_course(
         format!("{headline}\n\n{}{trust}{hint}{}", model::net_text(answer), signature())
     };
     let figure = || pictures::of_answer(&headline, answer);
-    let told = products.write(
-        figure,
-        |figure| report::of_net_impact(&headline, scene, trust, answer, figure),
-        || Files::of_net(json, &figure()),
-    )?;
-    Ok(printed + &told)
+    with_files(printed, |printed| {
+        products.write(
+            printed,
+            figure,
+            |figure| report::of_net_impact(&headline, scene, trust, answer, figure),
+            || Files::of_net(json, &figure()),
+        )
+    })
 }
