@@ -296,6 +296,9 @@ fn options_that_would_replace_the_file_of_another_are_refused() {
         let message = refused(folder.path(), &[command, &["--out", "file"]].concat());
         assert!(message.contains("--out = file is not allowed; it must be a folder"), "{message}");
     }
+    let sweep = format!(r#"{{ "scene": {quick}, "vary": [{{ "field": "striker.speed_m_s", "values": [1, 2] }}] }}"#);
+    fs::write(folder.path().join("sweep.json"), sweep).unwrap();
+    assert!(refused(folder.path(), &["sweep", "sweep.json", "--out", "file"]).contains("file is a file"));
 }
 
 /// A file that cannot be written does not discard what was computed.
@@ -338,7 +341,8 @@ fn a_sweep_refuses_a_folder_of_something_else() {
         fs::remove_dir_all(folder.path().join("out")).unwrap();
     }
     stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"]));
-    // It accepts its own folder again.
+    // It accepts its own folder again, also with files of other names.
+    fs::write(folder.path().join("out/notes.txt"), "mine").unwrap();
     assert!(stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"])).contains("all points were done"));
 }
 

@@ -39,8 +39,8 @@ The axes of "vary" form a grid, whose last axis runs fastest; each of its points
 gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes are the same for any number of
 threads, parts and ranks. A scene that cannot be solved is a row with its error.
 
-Ctrl-C stops the sweep; the same command continues from there, also after a crash. A folder with anything else in it is
-rejected.
+Ctrl-C stops the sweep; the same command continues from there, also after a crash. A folder with another sweep, or with files
+of the names above that belong to none, is rejected; other files in it are left alone.
 Exit codes: 0 finished, 130 stopped, 2 for input that cannot be used (nothing is computed, or no point could be solved),
 1 if reading or writing fails. With the output redirected, lines on the standard error report the progress."#;
 

@@ -78,6 +78,10 @@ impl Folder {
     /// # Errors
     /// A folder that is in use, belongs to another sweep, or is damaged; errors of the system.
     pub(super) fn open(path: &Path, sweep: &Sweep, part: Part) -> Result<Folder, SweepError> {
+        if !path.is_dir() && path.symlink_metadata().is_ok() {
+            let text = format!("{} is a file; the results need a folder", path.display());
+            return Err(SweepError::Refused(text));
+        }
         let record = Record::new(sweep, part);
         let found = read_json::<Record>(&path.join(RECORD))?;
         if let Some(found) = &found {
