@@ -36,11 +36,16 @@ pub struct Thornton {
     pub yield_pressure_pa: f64,
 }
 
+/// Least ratio of yield pressure and effective modulus. The recovery is about this share of the compression, or more by the root
+/// of radius over compression, so that six digits of it are left.
+const LEAST_YIELD: f64 = 1e-9;
+
 impl Thornton {
     /// The law from `E*` (Pa), `R*` (m) and `p_y` (Pa).
     ///
     /// # Errors
-    /// A parameter that is not positive.
+    /// A parameter that is not positive; a yield pressure below 1e-9 of the effective modulus, for which the compression that is
+    /// recovered on unloading is lost to rounding.
     pub fn new(
         effective_modulus_pa: f64,
         effective_radius_m: f64,
@@ -65,6 +70,10 @@ impl Thornton {
         require_positive("effective_modulus_pa", self.effective_modulus_pa)?;
         require_positive("effective_radius_m", self.effective_radius_m)?;
         require_positive("yield_pressure_pa", self.yield_pressure_pa)?;
+        let least = LEAST_YIELD * self.effective_modulus_pa;
+        InvalidInput::unless(self.yield_pressure_pa >= least, "yield_pressure_pa", self.yield_pressure_pa, {
+            format!("at least {least:e} (1e-9 of the effective modulus), below which the recovery is lost to rounding")
+        })?;
         Ok(self)
     }
 
