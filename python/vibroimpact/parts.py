@@ -547,7 +547,7 @@ class KelvinVoigt(Part):
 
     ``stiffness_n_m``: Stiffness (N/m).
     ``damping_n_s_m``: Damping (N s/m), or ``restitution`` in its place.
-    ``restitution``: Restitution at a wall.
+    ``restitution``: Restitution at a wall, less than 1.
     """
 
     tag: ClassVar[tuple[str, str]] = ("law", "kelvin-voigt")

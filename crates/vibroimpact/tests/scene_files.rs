@@ -163,6 +163,8 @@ fn the_schema_is_current_and_distinguishes_scenes_from_others() {
         ("pinned-beam", "/start", json!({ "moving_modes": [{ "mode": 0 }] })),
         ("hysteretic", "/contact/k_bar", json!(0)),
         ("rubber-ball", "/contact/restitution", json!(1.5)),
+        ("pinned-beam", "/contact", json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 1 })),
+        ("pinned-beam", "/structure/attachments", json!([{ "location_m": 0.5, "mass_kg": -1 }])),
         ("infinite-plate", "/structure/length_m", json!(1)),
         ("infinite-plate", "/structure/thickness_m", json!(-1)),
         ("dropped-rod", "/structure/inclination_deg", json!(91)),
@@ -204,6 +206,24 @@ fn the_schema_is_current_and_distinguishes_scenes_from_others() {
             false => scene.impact().and_then(|impact| impact.solve()).map(drop),
         });
         assert!(refused.is_err(), "{name}{place}");
+    }
+}
+
+/// Values at the ends of the ranges are right to both.
+#[test]
+fn the_schema_accepts_what_the_program_accepts() {
+    let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
+    for (holder, field, value) in [
+        ("/structure", "attachments", json!([{ "location_m": 0.5, "mass_kg": 0, "spring_n_m": 0 }])),
+        ("", "contact", json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.999 })),
+        ("", "contact", json!({ "law": "hunt-crossley", "stiffness_n_m1_5": 1e9, "restitution": 1 })),
+        ("", "modes", json!(4.0)),
+        ("", "start", json!({ "moving_modes": [{ "mode": 1.0, "velocity_m_s": 0.1 }] })),
+    ] {
+        let mut scene = tree(&named("pinned-beam"));
+        scene.pointer_mut(holder).unwrap()[field] = value;
+        assert!(validator.is_valid(&scene), "{scene}");
+        assert!(Scene::from_value(&scene).and_then(|scene| scene.impact()).is_ok(), "{scene}");
     }
 }
 

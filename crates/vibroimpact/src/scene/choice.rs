@@ -6,6 +6,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Unexpected;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
+use super::from_tree::whole;
+
 /// The scene field `"model"`, and the model that an answer came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -77,10 +79,12 @@ impl<'de> Deserialize<'de> for Modes {
         #[serde(untagged)]
         enum Written {
             Count(usize),
+            Number(f64),
             Word(String),
         }
         match Written::deserialize(deserializer) {
             Ok(Written::Count(count)) => Ok(Modes::Count(count)),
+            Ok(Written::Number(number)) if whole(number).is_some() => Ok(Modes::Count(number as usize)),
             Ok(Written::Word(word)) if word == "auto" => Ok(Modes::Auto),
             _ => {
                 let allowed = "\"auto\", or a whole number from 0 to 10000";

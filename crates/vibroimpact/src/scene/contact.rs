@@ -79,7 +79,8 @@ pub enum Contact {
         stiffness_n_m: f64,
         /// Damping (N s/m), or `restitution` in its place.
         damping_n_s_m: Option<f64>,
-        /// Restitution at a wall.
+        /// Restitution at a wall, less than 1.
+        #[schemars(extend("exclusiveMaximum" = 1.0))]
         restitution: Option<f64>,
     },
     /// `"hunt-crossley"`: a power of the compression with damping in proportion to it, [`contact_models::HuntCrossley`].

@@ -15,6 +15,7 @@ pub struct Attachment {
     pub location_m: f64,
     /// Mass (kg); 0 when left out.
     #[serde(default)]
+    #[schemars(schema_with = "mass")]
     pub mass_kg: f64,
     /// Rotary inertia about the axis of bending (kg m^2); 0 when left out.
     #[serde(default)]
@@ -25,6 +26,11 @@ pub struct Attachment {
     /// Rotational spring between beam and ground (N m/rad); 0 when left out.
     #[serde(default)]
     pub rotational_spring_n_m_rad: f64,
+}
+
+/// The mass of an attachment may be zero, unlike that of a striker.
+fn mass(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({ "anyOf": [{ "type": "number", "minimum": 0.0 }], "default": 0.0 })
 }
 
 /// A rigid support between the ends of a beam: no displacement, no moment.

@@ -71,6 +71,12 @@ pub(super) fn from_tree<T: DeserializeOwned>(tree: &Value) -> Result<T, serde_pa
     serde_path_to_error::deserialize(Reader(tree))
 }
 
+/// The whole number that is written as this one; none if it has a fraction or is not exact.
+pub(super) fn whole(number: f64) -> Option<u64> {
+    const EXACT: f64 = (1u64 << 53) as f64;
+    (number.fract() == 0.0 && (0.0..=EXACT).contains(&number)).then_some(number as u64)
+}
+
 /// A tree as a source of values, as `&Value` is, but for the faults.
 #[derive(Clone, Copy)]
 struct Reader<'a>(&'a Value);
@@ -110,6 +116,14 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         }
     }
 
+    /// In JSON 40.0 is a whole number too.
+    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.as_u64().or_else(|| self.0.as_f64().and_then(whole)) {
+            Some(number) => visitor.visit_u64(number),
+            None => self.deserialize_any(visitor),
+        }
+    }
+
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.0 {
             Value::Null => visitor.visit_none(),
@@ -135,7 +149,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
         tuple_struct map struct identifier ignored_any
     }
 }
