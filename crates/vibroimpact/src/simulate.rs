@@ -96,7 +96,8 @@ impl Scene {
     /// # Errors
     /// As [`Scene::posed_on_infinite`], or numbers out of the range of the solver.
     pub fn solve_infinite(&self) -> Result<(Scale, infinite::Solution), InvalidInput> {
-        self.posed_on_infinite()?.solve(&infinite::Settings::default())
+        let posed = self.posed_on_infinite()?;
+        posed.solve(&infinite::Settings::default()).map_err(|fault| self.of_striker(fault))
     }
 }
 

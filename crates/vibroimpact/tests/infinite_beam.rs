@@ -327,7 +327,11 @@ fn scenes_that_do_not_fit_are_refused_by_field() {
         ("/structure/kind", json!("beam"), "structure.density_kg_m3 = 7800 is not a known field"),
         ("/striker/speed_m_s", json!(0), "striker.speed_m_s = 0 is not allowed"),
         ("/striker/speed_m_s", json!(-1), "striker.speed_m_s = -1 is not allowed"),
-        ("/striker/speed_m_s", json!(1e30), "s = "),
+        (
+            "/striker/speed_m_s",
+            json!(1e30),
+            "striker.radius_m = 0.033 is not allowed; it must be such that the number S of the impact, now",
+        ),
         ("/striker/radius_m", json!(-0.01), "striker.radius_m = -0.01"),
         ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": -1 }), "contact.stiffness_n_m = -1"),
         ("/contact", json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6 }), "contact.damping_n_s_m"),

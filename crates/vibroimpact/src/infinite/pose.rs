@@ -129,9 +129,41 @@ impl Scene {
         .map_err(|fault| match fault.field.first() {
             Some("mass_kg" | "speed_m_s") => fault.within("striker"),
             Some("stiffness_n_m1_5") => fault.within("contact"),
+            Some("impulse_response") => {
+                let kind = format!("\"{}\"", self.structure.kind());
+                let allowed =
+                    "a structure whose stiffness and mass give an impulse response that is neither infinite nor zero";
+                InvalidInput::new("structure", kind, allowed)
+            }
             _ => fault.within("structure"),
         })?;
         let hertz = matches!(self.contact, Contact::Hertz(_)).then_some(impact);
         Ok(Posed { receptance: impact.receptance(), striker, law, hertz })
+    }
+
+    /// An error of a quantity that follows from striker, contact and structure, as one of the field that states the striker's
+    /// mass: of all fields this one has the largest effect.
+    pub(crate) fn of_striker(&self, fault: InvalidInput) -> InvalidInput {
+        let (quantity, from) = match fault.field.first() {
+            Some("s") => (
+                "number S",
+                "grows with mass and speed of the striker, and falls with stiffness and mass of the structure",
+            ),
+            Some("time_s") => {
+                ("unit of time T", "follows from the mass of the striker and the section of the structure")
+            }
+            Some("force_n") => ("unit of force m v/T", "follows from the striker and the section of the structure"),
+            Some("displacement_m") => {
+                ("unit of length v T", "follows from the striker and the section of the structure")
+            }
+            _ => return fault,
+        };
+        let (field, value) = match (self.striker.mass_kg, self.striker.radius_m) {
+            (Some(mass_kg), _) => ("mass_kg", mass_kg),
+            (None, radius_m) => ("radius_m", radius_m.unwrap_or(f64::NAN)),
+        };
+        let found = fault.value.map_or_else(String::new, |found| found.to_string());
+        let allowed = format!("such that the {quantity} of the impact, now {found}, is {}; it {from}", fault.allowed);
+        InvalidInput::new(["striker", field], number(value), allowed)
     }
 }

@@ -223,7 +223,10 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
 type Solved = Result<(Choice, Option<f64>), String>;
 
 fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, InvalidInput> {
-    let groups = beam.impact(pose)?.groups()?;
+    let groups = match beam.impact(pose).and_then(|impact| impact.groups()) {
+        Ok(groups) => groups,
+        Err(fault) => return Ok(Err(format!("an infinite beam cannot be solved: {fault}"))),
+    };
     let once = pose.scene.model == Model::Auto;
     if once && groups.s > CRITICAL_S {
         return Ok(Err(format!("the striker would not leave an infinite beam at once (S = {})", small(groups.s))));

@@ -14,6 +14,20 @@ pub(crate) fn require_positive(field: impl Into<Path>, value: f64) -> Result<(),
     InvalidInput::require_positive(field, value).map(|_| ()).map_err(as_json)
 }
 
+/// Checks that a quantity which follows from several fields is finite and greater than zero; the error names the most extreme of
+/// the fields.
+pub(crate) fn require_product(quantity: &str, value: f64, fields: &[(&str, f64)]) -> Result<(), InvalidInput> {
+    let far = |(_, value): &&(&str, f64)| value.ln().abs();
+    match fields.iter().max_by(|a, b| far(a).total_cmp(&far(b))) {
+        Some((field, extreme)) if !(value > 0.0 && value.is_finite()) => {
+            let all = fields.iter().map(|(field, _)| *field).collect::<Vec<_>>().join(", ");
+            let allowed = format!("such that the {quantity}, which follows from {all}, is neither infinite nor zero");
+            Err(InvalidInput::new(*field, number(*extreme), allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// An error that shows its number as in JSON.
 pub(crate) fn as_json(fault: InvalidInput) -> InvalidInput {
     match fault.value {

@@ -4,7 +4,7 @@ use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::require_positive;
+use super::error::{require_positive, require_product};
 use super::json::number;
 use super::segment::Segment;
 
@@ -99,11 +99,15 @@ impl InfinitePlate {
         require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
         require_positive("density_kg_m3", self.density_kg_m3)?;
         require_positive("thickness_m", self.thickness_m)?;
-        if self.poissons_ratio > -1.0 && self.poissons_ratio <= 0.5 {
-            return Ok(());
+        if !(self.poissons_ratio > -1.0 && self.poissons_ratio <= 0.5) {
+            let allowed = super::fields::allowed("poissons_ratio").unwrap_or_default();
+            return Err(InvalidInput::new("poissons_ratio", number(self.poissons_ratio), allowed));
         }
-        let allowed = super::fields::allowed("poissons_ratio").unwrap_or_default();
-        Err(InvalidInput::new("poissons_ratio", number(self.poissons_ratio), allowed))
+        let thickness = ("thickness_m", self.thickness_m);
+        let rigidity = [("youngs_modulus_pa", self.youngs_modulus_pa), thickness];
+        require_product("flexural rigidity", self.flexural_rigidity_n_m(), &rigidity)?;
+        let mass = [("density_kg_m3", self.density_kg_m3), thickness];
+        require_product("mass per area", self.mass_per_area_kg_m2(), &mass)
     }
 
     pub(crate) fn flexural_rigidity_n_m(&self) -> f64 {

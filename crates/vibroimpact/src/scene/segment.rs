@@ -7,7 +7,7 @@ use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::require_positive;
+use super::error::{require_positive, require_product};
 use super::fields;
 use super::json::number;
 use super::sets::one_of_sets;
@@ -126,26 +126,38 @@ impl Segment {
         let section = self.section()?;
         let length_m = self.length_m;
         let [modulus, density] = [self.youngs_modulus_pa, self.density_kg_m3].map(Option::unwrap_or_default);
-        Ok(match section {
-            Section::Direct => beam_modes::Segment {
-                length_m,
-                flexural_rigidity_n_m2: self.flexural_rigidity_n_m2.unwrap_or_default(),
-                mass_per_length_kg_m: self.mass_per_length_kg_m.unwrap_or_default(),
-            },
-            Section::Rectangle([width, thickness]) => RectangularSegment {
-                length_m,
-                youngs_modulus_pa: modulus,
-                density_kg_m3: density,
-                width_m: width,
-                thickness_m: thickness,
+        let (piece, sizes) = match section {
+            Section::Direct => {
+                return Ok(beam_modes::Segment {
+                    length_m,
+                    flexural_rigidity_n_m2: self.flexural_rigidity_n_m2.unwrap_or_default(),
+                    mass_per_length_kg_m: self.mass_per_length_kg_m.unwrap_or_default(),
+                });
             }
-            .into(),
-            Section::Circle(diameter) => beam_modes::Segment {
-                length_m,
-                flexural_rigidity_n_m2: modulus * PI * diameter.powi(4) / 64.0,
-                mass_per_length_kg_m: density * PI * diameter.powi(2) / 4.0,
-            },
-        })
+            Section::Rectangle([width, thickness]) => {
+                let piece = RectangularSegment {
+                    length_m,
+                    youngs_modulus_pa: modulus,
+                    density_kg_m3: density,
+                    width_m: width,
+                    thickness_m: thickness,
+                };
+                (beam_modes::Segment::from(piece), vec![("width_m", width), ("thickness_m", thickness)])
+            }
+            Section::Circle(diameter) => {
+                let piece = beam_modes::Segment {
+                    length_m,
+                    flexural_rigidity_n_m2: modulus * PI * diameter.powi(4) / 64.0,
+                    mass_per_length_kg_m: density * PI * diameter.powi(2) / 4.0,
+                };
+                (piece, vec![("diameter_m", diameter)])
+            }
+        };
+        let with = |field, value| [&[(field, value)], &sizes[..]].concat();
+        let rigidity = with("youngs_modulus_pa", modulus);
+        require_product("flexural rigidity", piece.flexural_rigidity_n_m2, &rigidity)?;
+        require_product("mass per length", piece.mass_per_length_kg_m, &with("density_kg_m3", density))?;
+        Ok(piece)
     }
 
     /// Shear and rotary inertia, or `None` if neither is given.
