@@ -200,6 +200,17 @@ fn intervals_are_printed_with_enough_digits_to_tell_their_ends_apart() {
 }
 
 #[test]
+fn the_name_of_a_body_is_apart_from_its_energy() {
+    let name = "a body with a name of many words";
+    let scene =
+        json!({ "bodies": { name: { "kind": "mass", "mass_kg": 1, "velocity_m_s": 1 } }, "contacts": [], "end_s": 1 });
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    let text = stdout(&run(folder.path(), &["simulate", "scene.json"]));
+    assert!(text.contains(&format!("{name}  500.0 mJ at the start")), "{text}");
+}
+
+#[test]
 fn a_ball_that_starts_inside_a_beam_leaves_the_range_of_contact_laws() {
     let mut inside: Value = serde_json::from_str(&fs::read_to_string(scene("dropped-ball")).unwrap()).unwrap();
     inside["bodies"]["ball"]["position_m"] = json!(-1);

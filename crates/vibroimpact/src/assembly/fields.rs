@@ -7,7 +7,7 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("bodies", "an object with one object for each named body, which has the field kind"),
     ("contacts", "a list of contacts, each an object with name, between, gap_m, and a law with its parameters"),
     ("contacts[]", "an object with name, between, gap_m, and a law with its parameters"),
-    ("name", "a text that is the name of no other contact"),
+    ("name", "a text without control characters that is the name of no other contact"),
     ("between", BETWEEN),
     ("between[]", "an object with body and, unless that is a mass, location_m or location; or \"ground\""),
     ("two_sided", "true or false"),

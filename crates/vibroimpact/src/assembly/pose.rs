@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use contact_models::Law;
-use invalid_input::{Path, Step, Value};
+use invalid_input::{Path, Step, Value, printable};
 use vibroimpact_sim::assembly::{self, Assembly, Force, Settings};
 
 use super::AssemblyScene;
@@ -61,8 +61,8 @@ impl AssemblyScene {
         for (i, contact) in self.contacts.iter().enumerate() {
             let posed = bodies.contact(contact).map_err(|fault| beside(fault, ("contacts", i)))?;
             for (name, posed) in posed {
-                if name.is_empty() || names.contains(&name) {
-                    let allowed = "a text that is the name of no other contact";
+                if name.is_empty() || !is_printable(&name) || names.contains(&name) {
+                    let allowed = "a text without control characters that is the name of no other contact";
                     return Err(InvalidInput::new(("contacts", i, "name"), format!("{name:?}"), allowed));
                 }
                 names.push(name);
@@ -156,6 +156,11 @@ impl AssemblyScene {
     }
 }
 
+/// Whether a name is one line that cannot control a terminal.
+fn is_printable(name: &str) -> bool {
+    !name.contains(['\n', '\t']) && printable(name).to_string() == name
+}
+
 /// An error of a location or a field of an object with the object's path; an error of a body has its path already.
 fn beside(fault: InvalidInput, path: impl Into<Path>) -> InvalidInput {
     if fault.field.first() == Some("bodies") { fault } else { fault.within(path) }
@@ -186,12 +191,9 @@ impl<'a> Bodies<'a> {
         if given.is_empty() {
             return Err(InvalidInput::new("bodies", "{}", "an object with at least one named body"));
         }
-        if let Some(name) = given.keys().find(|name| ["", "ground"].contains(&name.as_str())) {
-            return Err(InvalidInput::new(
-                "bodies",
-                format!("{name:?}"),
-                "another name, because the empty name and \"ground\" do not name bodies",
-            ));
+        if let Some(name) = given.keys().find(|name| ["", "ground"].contains(&name.as_str()) || !is_printable(name)) {
+            let allowed = "another name, because the empty name, \"ground\" and control characters do not name bodies";
+            return Err(InvalidInput::new("bodies", format!("{name:?}"), allowed));
         }
         let sides = scene.contacts.iter().flat_map(|contact| &contact.between).filter_map(|side| match side {
             Side::Ground(_) => None,

@@ -157,8 +157,10 @@ pub fn result(summary: &Summary) -> String {
     text += &columns(&CONTACT, contact_rows(summary).into_iter());
     if summary.energy.is_some() {
         text += "\n  energy\n";
-        for [name, value] in energy_rows(summary) {
-            let _ = writeln!(text, "    {name:<24}{value}");
+        let rows = energy_rows(summary);
+        let width = rows.iter().map(|[name, _]| name.chars().count() + 2).fold(24, usize::max);
+        for [name, value] in rows {
+            let _ = writeln!(text, "    {name:<width$}{value}");
         }
     }
     let listed = first_intervals(summary, LISTED);

@@ -20,6 +20,7 @@ mod comparison;
 mod html;
 mod simulation;
 
+use crate::text::printable;
 pub use crate::text::significant;
 pub use comparison::{Comparison, Expected, Verdict};
 pub(crate) use simulation::trusted;
@@ -111,14 +112,14 @@ impl Report {
         self.figures.extend(other.figures);
     }
 
-    /// The document as Markdown; figures are linked as files.
+    /// The document as Markdown; figures are linked as files. Control characters are shown by their number.
     pub fn markdown(&self) -> String {
-        format!("# {}\n{}", one_line(&self.title), self.body)
+        printable(&format!("# {}\n{}", one_line(&self.title), self.body))
     }
 
     /// The document as one HTML page with the figures in it.
     pub fn html(&self) -> String {
-        html::page(&self.title, &self.markdown(), &self.figures)
+        html::page(&printable(&self.title), &self.markdown(), &self.figures)
     }
 
     /// Writes `report.md`, `report.html` and the figures into a folder, and gives their paths.

@@ -88,13 +88,12 @@ fn files_are_written_whole() {
 
 #[test]
 fn text_from_outside_stays_text() {
-    let hostile =
-        "![x](http://evil/a.png) <img src=//evil> `a` [l](http://evil)\n# h | c ~~~ ``` ````\n\n<script>1</script>";
+    let hostile = "![x](http://evil/a.png) <img src=//evil> `a` [l](http://evil)\n# h | c ~~~ ``` ````\n\n<script>1</script>\0\u{1b}";
     let mut report = Report::new(literal(hostile));
     report.text(&literal(hostile));
     report.code(hostile);
     let html = report.html();
-    for tag in ["<img", "<a ", "<script", "<h1>h", "<h2"] {
+    for tag in ["<img", "<a ", "<script", "<h1>h", "<h2", "\0", "\u{1b}"] {
         assert!(!html.contains(tag), "{tag} in {html}");
     }
     assert!(html.contains("![x](http://evil/a.png) &lt;img src=//evil&gt; `a`"));
