@@ -29,7 +29,7 @@ impl Chain {
     pub fn of(system: &BeamSystem) -> Result<Self, InvalidInput> {
         let mut chain = Self::nodes_between(system, None)?;
         if system.foundation_n_m2 > 0.0 {
-            chain.cut_by_decay()?;
+            chain.cut_by_decay(system)?;
         }
         Ok(chain)
     }
@@ -37,7 +37,7 @@ impl Chain {
     /// The chain with a node at `y`, divided so finely that waves do not decay within a span.
     pub fn for_statics(system: &BeamSystem, y: f64) -> Result<Self, InvalidInput> {
         let mut chain = Self::nodes_between(system, Some(y))?;
-        chain.cut_by_decay()?;
+        chain.cut_by_decay(system)?;
         Ok(chain)
     }
 
@@ -141,15 +141,18 @@ impl Chain {
     }
 
     /// Divides spans in which axial force or foundation cause decaying waves.
-    fn cut_by_decay(&mut self) -> Result<(), InvalidInput> {
+    fn cut_by_decay(&mut self, system: &BeamSystem) -> Result<(), InvalidInput> {
         let pieces = |span: &Span| {
             let by_force = (span.tension.abs() / span.rigidity).sqrt();
             let by_foundation = (2.0 * span.foundation / span.rigidity).sqrt().sqrt();
             (span.length * (by_force + by_foundation) / (0.7 * SHORT)).ceil().max(1.0)
         };
         if self.spans.iter().map(pieces).sum::<f64>() > MOST_SPANS {
-            let field = if self.spans[0].foundation > 0.0 { "foundation_n_m2" } else { "axial_force_n" };
-            return Err(InvalidInput::new(field, "as given", BESIDE_BENDING));
+            let (field, value) = match system.foundation_n_m2 > 0.0 {
+                true => ("foundation_n_m2", system.foundation_n_m2),
+                false => ("axial_force_n", system.axial_force_n),
+            };
+            return Err(InvalidInput::new(field, value, BESIDE_BENDING));
         }
         let (mut spans, mut nodes) = (Vec::new(), Vec::new());
         for (span, node) in self.spans.iter().zip(&self.nodes) {

@@ -325,6 +325,98 @@ fn a_result_is_printed_even_if_its_files_cannot_be_written() {
     }
 }
 
+/// A value that the field of a scene cannot have is an error of this field, of the option or of the file that states it.
+#[test]
+fn errors_name_the_field_that_has_to_change() {
+    let infinite = r#"{ "structure": { "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+        "width_m": 0.028, "thickness_m": 0.028 }, "striker": { "density_kg_m3": 7800, "radius_m": 0.065, "speed_m_s": 0.5 },
+        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } }"#;
+    let bodies = r#"{ "bodies": { "a": { "kind": "mass", "mass_kg": 1, "velocity_m_s": -1 } },
+        "contacts": [{ "name": "c", "between": [{ "body": "a" }, "ground"], "law": "hertz", "stiffness_n_m1_5": 1e9 }],
+        "loads": [{ "body": "a", "force_n": 1, "frequency_hz": 5 }], "end_s": 0.01 }"#;
+    let load = |text: &str| bodies.replace(r#""force_n": 1, "frequency_hz": 5"#, text);
+    let modes = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
+    let axis = r#"{ "field": "modes", "from": 1, "to": 3, "count": 5 }"#;
+    let drawn = r#"{ "seed": 1, "draws": 2, "fields": [{ "field": "modes", "from": 1, "to": 3 }] }"#;
+    let modal = |mass: &str, speed: &str| {
+        format!(
+            r#"{{ "structure": {{ "kind": "modal", "omega_rad_s": [100, 400], "shape_at_location": [1, 1] }},
+            "striker": {{ "mass_kg": {mass}, "speed_m_s": {speed} }},
+            "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1e9 }} }}"#
+        )
+    };
+    let folder = folder(&[
+        ("infinite.json", infinite),
+        ("fast.json", &infinite.replace("0.5", "1e300")),
+        ("wide.json", &infinite.replace("\"width_m\": 0.028", "\"width_m\": 1e300")),
+        ("slow.json", &load(r#""force_n": 1, "frequency_hz": 1e-300"#)),
+        ("short.json", &load(r#""times_s": [], "forces_n": []"#)),
+        ("table.json", &load(r#""file": "empty.csv""#)),
+        ("empty.csv", "time_s,force_n\n"),
+        ("alone.json", r#"{ "bodies": { "a": { "kind": "mass", "mass_kg": 1 } }, "contacts": [], "end_s": 1 }"#),
+        ("name.json", &bodies.replace("\"a\"", r#""a\u001b""#)),
+        ("contact.json", &bodies.replace("\"c\"", r#""c\u0000""#)),
+        ("scene.json", &modes),
+        ("axial.json", &modes.replace("\"kind\"", "\"axial_force_n\": 1e12, \"kind\"")),
+        ("data.csv", "striker.speed_m_s,restitution\n1,0.3\n2,0.4\n0.5,0.2\n"),
+        ("axis.json", &format!(r#"{{ "scene": {modes}, "vary": [{axis}] }}"#)),
+        ("drawn.json", &format!(r#"{{ "scene": {modes}, "random": {drawn} }}"#)),
+        ("large.toml", "[striker]\nspeed_m_s = 99999999999999999999 # fast\n"),
+        ("larger.toml", "striker = { mass_kg = 1, speed_m_s = 18446744073709551615 }\n"),
+        ("twice.toml", "[striker]\nspeed_m_s = 1\nspeed_m_s = 2\n"),
+        ("tiny.json", &modal("1", "5e-324")),
+        ("heavy.json", &modal("1.79e308", "1")),
+    ]);
+    let predictability = ["predictability", "scene.json", "--out", "o", "--over"];
+    for (arguments, part) in [
+        (
+            &["simulate", "infinite.json"][..],
+            "striker.radius_m = 0.065 is not allowed; it must be such that the number S",
+        ),
+        (&["infinite-beam", "fast.json"], "striker.radius_m = 0.065"),
+        (
+            &["simulate", "wide.json"],
+            "structure.width_m = 1e+300 is not allowed; it must be such that the flexural rigidity",
+        ),
+        (&["infinite-beam", "--s", "1", "--set", "a=1"], "'--s <S>' cannot be used with '--set <FIELD=VALUE>'"),
+        (&["simulate", "slow.json"], "loads[0].frequency_hz = 1e-300"),
+        (&["simulate", "short.json"], "of at least two values each"),
+        (&["simulate", "table.json"], "empty.csv, number of rows = 0 is not allowed; it must be at least 2"),
+        (&["sensitivity", "alone.json"], "contacts = [] is not allowed"),
+        (&["simulate", "name.json"], r#"bodies = "a\u{1b}" is not allowed"#),
+        (&["simulate", "contact.json"], r#"contacts[0].name = "c\0" is not allowed"#),
+        (&["simulate", "axial.json"], "structure.axial_force_n = 1000000000000 is not allowed"),
+        (&["identify", "data.csv", "--scene", "scene.json", "--free", "modes"], "--free modes = 4 is not allowed"),
+        (&["sweep", "axis.json", "--out", "o"], "vary[0] = 1 to 3 is not allowed"),
+        (&["sweep", "drawn.json", "--out", "o"], "random.fields[0] = 1 to 3 is not allowed"),
+        (&["simulate", "large.toml"], "line 2, column 13, in speed_m_s: the whole number 99999999999999999999"),
+        (&["simulate", "larger.toml"], "in speed_m_s: the whole number 18446744073709551615"),
+        (&["simulate", "twice.toml"], "line 3, column 1: the key \"speed_m_s\" occurs twice"),
+        (&["sensitivity", "tiny.json", "--by", "striker.speed_m_s"], "its neighbours cannot be distinguished from it"),
+        (&["emoc", "heavy.json"], "striker.mass_kg = 1.79e+308 is not allowed; it must be such that Z"),
+        (&["simulate", "scene.json", "--intervals", "-1"], "invalid value '-1' for '--intervals <N>'"),
+        (&["sweep", "axis.json", "--out", "o", "--threads", "-1"], "invalid value '-1' for '--threads <N>'"),
+        (&["sweep", "axis.json", "--out", "o", "--shard", "-1/3"], "invalid value '-1/3' for '--shard <K/N>'"),
+        (
+            &[&predictability[..], &["location_m=0:nan:3", "--blur", "location_m=1%"]].concat(),
+            "--over location_m, to = NaN is not allowed",
+        ),
+        (
+            &[&predictability[..], &["location_m=0.1:1:3", "--blur", "location_m=-1%"]].concat(),
+            "--blur location_m = -1.0% is not allowed; it must be a finite number greater than 0",
+        ),
+    ] {
+        let message = refused(folder.path(), arguments);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    // a whole number with a decimal point is one
+    let with_point = ["simulate", "scene.json", "--set", "modes=4.0", "--json"];
+    assert_eq!(
+        stdout(&run(folder.path(), &with_point)),
+        stdout(&run(folder.path(), &["simulate", "scene.json", "--json"]))
+    );
+}
+
 #[test]
 fn a_sweep_refuses_a_folder_of_something_else() {
     let sweep = format!(

@@ -147,7 +147,7 @@ fn bad_parameters_are_refused_by_name() {
         ("0.2, \"speed", "0, \"speed", "striker.mass_kg"),
         ("0.3, \"modes", "1.3, \"modes", "location_m = 1.3"),
         ("1.8e10", "-1", "contact.stiffness_n_m1_5"),
-        ("\"mass_kg\": 0.2", "\"mass_kg\": 1e308", "z = inf"),
+        ("\"mass_kg\": 0.2", "\"mass_kg\": 1e308", "it must be such that Z = m sum phi_k^2, now inf,"),
     ] {
         let message = refusal(&PINNED.replace(from, to), None, &["emoc", "scene.json"]);
         assert!(message.contains(part), "{part}: {message}");

@@ -18,7 +18,7 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("loads", "a list of loads, each an object with body, its location, and a force"),
     ("loads[]", "an object with body, its location, and a force"),
     ("force_n", "a finite number"),
-    ("frequency_hz", POSITIVE),
+    ("frequency_hz", FREQUENCY),
     ("phase_deg", "a finite number"),
     ("times_s", "a list of finite numbers in ascending order; equal neighbours make a jump"),
     ("times_s[]", "a finite number not less than the one before"),
@@ -40,6 +40,9 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("axial_rigidity_n", POSITIVE),
     ("area_m2", POSITIVE),
 ];
+
+/// The frequency of a harmonic load: its longest period is that of the longest run.
+pub(crate) const FREQUENCY: &str = "a number from 1e-12 to 1e30";
 
 /// The two sides of a contact.
 pub(crate) const BETWEEN: &str = "a list of two, each an object with body and its location, or \"ground\"; the first lies on \

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use vibroimpact_sim::assembly::Force;
 
 use super::contact::Point;
+use super::fields::FREQUENCY;
 use super::schema::courses;
 use crate::input::{Table, read_bytes};
 use crate::scene::json::number;
-use crate::scene::require_positive;
 use crate::scene::{InvalidInput, Location, SceneError, table_path};
 
 /// A force on a point of a body, positive along `+x`: constant (`force_n`), harmonic (`force_n sin(2 pi frequency_hz t +
@@ -102,12 +102,15 @@ impl Course<'_> {
             return self.sampled();
         }
         let Some(force_n) = amplitude else {
-            let allowed = format!("given, unless times_s and {list} or file take its place");
+            let allowed =
+                format!("given, unless times_s and {list}, of at least two values each, or file take its place");
             return Err(InvalidInput::missing(name, allowed));
         };
         match (self.frequency_hz, self.phase_deg) {
             (Some(frequency_hz), phase_deg) => {
-                require_positive("frequency_hz", frequency_hz)?;
+                if !FREQUENCIES_HZ.contains(&frequency_hz) {
+                    return Err(InvalidInput::new("frequency_hz", number(frequency_hz), FREQUENCY));
+                }
                 let phase_rad = phase_deg.unwrap_or(0.0).to_radians();
                 Ok(Force::Harmonic { force_n, omega_rad_s: TAU * frequency_hz, phase_rad })
             }
@@ -115,7 +118,7 @@ impl Course<'_> {
             (None, Some(phase_deg)) if self.constant => {
                 Err(InvalidInput::new("phase_deg", number(phase_deg), "left out in the absence of frequency_hz"))
             }
-            (None, _) => Err(InvalidInput::missing("frequency_hz", "a finite number greater than 0")),
+            (None, _) => Err(InvalidInput::missing("frequency_hz", FREQUENCY)),
         }
     }
 
@@ -143,6 +146,9 @@ impl Course<'_> {
         Ok(Force::Sampled { times_s: times.to_vec(), forces_n: values.to_vec() })
     }
 }
+
+/// As [`FREQUENCY`] says.
+const FREQUENCIES_HZ: std::ops::RangeInclusive<f64> = 1e-12..=LARGEST;
 
 /// The largest number that the solver works with.
 pub(super) const LARGEST: f64 = 1e30;
@@ -240,7 +246,9 @@ fn read_history(folder: &Path, file: &str, column: &str) -> Result<(Vec<f64>, Ve
             let place = table.needed_column(name, &needed)?;
             table.rows.iter().map(|row| row.number(place, name)).collect::<Result<Vec<f64>, InvalidInput>>()
         };
-        Ok((list("time_s")?, list(column)?))
+        let (times_s, values) = (list("time_s")?, list(column)?);
+        InvalidInput::unless(times_s.len() > 1, "number of rows", times_s.len(), "at least 2")?;
+        Ok((times_s, values))
     };
     Ok(read().map_err(|fault: InvalidInput| fault.in_place(file))?)
 }

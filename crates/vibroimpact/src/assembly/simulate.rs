@@ -112,7 +112,7 @@ impl AssemblyScene {
             return Err(fault);
         }
         let whole = left_out.iter().all(|count| *count == 0) && run.outcome != Outcome::Stopped(Reason::Interrupted);
-        let reliable_until_s = match wanted.reliability && whole {
+        let reliable_until_s = match wanted.reliability && whole && run.end_s > 0.0 {
             true => {
                 let mut stop = || wanted.stop.load(Ordering::Relaxed);
                 solver.reliable_until(&posed.settings, &intervals, run.end_s, &mut stop).map_err(in_scene)?

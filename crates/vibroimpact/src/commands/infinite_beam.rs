@@ -37,7 +37,7 @@ pub struct Arguments {
     #[command(flatten)]
     changes: Changes,
     /// The nondimensional parameter S, in place of a scene
-    #[arg(long, value_name = "S", value_parser = super::real, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", value_parser = super::real, allow_hyphen_values = true, conflicts_with = "set")]
     s: Option<f64>,
     #[command(flatten)]
     products: Products,
@@ -51,7 +51,7 @@ enum Study {
     /// List the critical S and the turning points, at which the n-th separation disappears
     TurningPoints {
         /// Number of turning points, from the first (at the largest S); 1 to 60
-        #[arg(long, value_name = "N", value_parser = super::whole::<usize>)]
+        #[arg(long, value_name = "N", value_parser = super::whole::<usize>, allow_negative_numbers = true)]
         count: usize,
         /// Print one JSON object in place of the table
         #[arg(long)]

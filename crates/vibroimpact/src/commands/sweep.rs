@@ -60,7 +60,7 @@ pub struct Run {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Number of threads; default: one for each core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096), allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Print one JSON object in place of the summary
     #[arg(long)]
@@ -75,7 +75,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     run: Run,
     /// Compute only the K-th of N parts
-    #[arg(long, value_name = "K/N", value_parser = part)]
+    #[arg(long, value_name = "K/N", value_parser = part, allow_hyphen_values = true)]
     shard: Option<Part>,
     /// Compute on the ranks of an MPI job, under mpirun; the first rank hands out the work
     #[arg(long, conflicts_with = "threads")]

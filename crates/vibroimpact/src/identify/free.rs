@@ -85,8 +85,13 @@ impl Free {
             })?;
             return Ok((low * high).sqrt());
         }
-        let found = FieldPath::parse(&self.field).and_then(|path| path.get(tree).cloned());
-        match found {
+        let path = FieldPath::parse(&self.field);
+        let is_setting = path.as_ref().is_some_and(FieldPath::is_setting);
+        match path.and_then(|path| path.get(tree).cloned()) {
+            Some(value) if is_setting => {
+                let allowed = "a field that can vary continuously, because it is to be estimated";
+                Err(InvalidInput::new(name, quote(&value), allowed))
+            }
             None => {
                 let allowed = "a field that the scene states, as a number".to_owned() + &self.meant(tree);
                 Err(InvalidInput::missing(name, allowed))

@@ -135,5 +135,12 @@ fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
-    Impact::new(effective_kg, &Site::new(&vibrating(modes))?)
+    Impact::new(effective_kg, &Site::new(&vibrating(modes))?).map_err(|fault| match fault.field.first() {
+        Some("z") => {
+            let found = fault.value.map_or_else(String::new, |found| found.to_string());
+            let allowed = format!("such that Z = m sum phi_k^2, now {found}, is {}", fault.allowed);
+            InvalidInput::new("mass_kg", mass_kg, allowed)
+        }
+        _ => fault,
+    })
 }

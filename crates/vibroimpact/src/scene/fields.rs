@@ -168,6 +168,7 @@ pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
         "inclination_deg" => Some((Included(0.0), Included(90.0))),
         "statistics_from_s" => Some((Included(0.0), Excluded(1e12))),
         "end_s" => Some((Excluded(0.0), Included(1e12))),
+        "frequency_hz" => Some((Included(1e-12), Included(1e30))),
         _ => allowed(name).and_then(of_text),
     }
 }

@@ -5,6 +5,7 @@ use serde_json::{Map, Number, Value};
 
 use super::error::SceneError;
 use super::fields;
+use super::told::shorten;
 
 /// Parses TOML text. The format itself rejects keys that occur twice.
 pub(crate) fn parse(text: &str) -> Result<Value, SceneError> {
@@ -17,13 +18,37 @@ fn syntax_error(text: &str, fault: &toml::de::Error) -> SceneError {
     let at = fault.span().map_or(0, |span| span.start).min(text.len());
     let before = text.get(..at).unwrap_or_default();
     let line_start = before.rfind('\n').map_or(0, |end| end + 1);
-    let reason = fault.message().trim_end().replace('\n', "; ");
+    let rest = &text[before.len()..];
+    let word = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+    let (field, reason) = match fault.message() {
+        "duplicate key" => (Path::default(), format!("the key {word:?} occurs twice")),
+        // each way to read a whole number has an error of its own for it
+        _ if is_large(word) => {
+            let key =
+                before.trim_end().strip_suffix('=').map(|before| before.trim_end().rsplit(|c| !is_word(c)).next());
+            let field = key.flatten().map_or_else(Path::default, Path::from);
+            (field, format!("the whole number {} has more than 64 bits; as 1e20 it is a number", shorten(word)))
+        }
+        told => (Path::default(), told.trim_end().replace('\n', "; ")),
+    };
     SceneError::Syntax {
         line: before.matches('\n').count() + 1,
         column: before[line_start..].chars().count() + 1,
-        field: Path::default(),
+        field,
         reason,
     }
+}
+
+/// Whether this is a part of a bare key or of a number.
+fn is_word(c: char) -> bool {
+    c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '+')
+}
+
+/// Whether this is a whole number that TOML does not have.
+fn is_large(word: &str) -> bool {
+    let digits = word.trim_start_matches(['+', '-']);
+    let whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'_');
+    whole && word.replace('_', "").parse::<i64>().is_err()
 }
 
 /// The tree as JSON. Numbers that are not finite are reported as values of their field; dates become texts.

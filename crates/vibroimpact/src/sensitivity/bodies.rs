@@ -51,8 +51,8 @@ impl AssemblyScene {
     /// none is named.
     ///
     /// # Errors
-    /// As [`AssemblyScene::pose`]; a field that is not a number, that the scene does not state, or that cannot vary continuously; a
-    /// run that is too long, or that has no derivative because a contact grazes or contacts whose force jumps begin at the same
+    /// As [`AssemblyScene::pose`]; a scene without contacts; a field that is not a number, that the scene does not state, or that
+    /// cannot vary continuously; a run that is too long, or that has no derivative because a contact grazes or contacts whose force jumps begin at the same
     /// time.
     ///
     /// ```
@@ -73,6 +73,8 @@ impl AssemblyScene {
     pub fn sensitivity(&self, fields: &[String]) -> Result<BodiesSensitivity, InvalidInput> {
         let tree = versioned_tree(self);
         let base = self.pose()?;
+        let allowed = "a list with at least one contact, because the outputs to differentiate are those of contacts";
+        InvalidInput::unless(!self.contacts.is_empty(), "contacts", "[]", allowed)?;
         let pose = |tree: &Value| AssemblyScene::from_value(tree)?.pose();
         let sort = |near: &mut Posed| take_modes_of(&mut near.assembly, &base.assembly);
         let around = around((&tree, fields), &Posing { pose: &pose, sort: &sort, sides: &of_tree_of_bodies })?;

@@ -69,6 +69,9 @@ impl<T> Neighbours<T> {
     /// The same for a number of the scene, or the reason why it has no neighbours.
     fn beside(tree: &Value, (path, value): (&FieldPath, f64), by: &Posing<T>) -> Result<Neighbours<T>, String> {
         let steps: &[f64] = if value == 0.0 { &STEPS_AT_ZERO } else { &STEPS.map(|step| step * value.abs()) };
+        if steps.iter().any(|step| *step < f64::MIN_POSITIVE) {
+            return Err("it is so small that its neighbours cannot be distinguished from it".to_owned());
+        }
         let here = (by.sides)(tree);
         let mut reason = String::new();
         for step in steps {

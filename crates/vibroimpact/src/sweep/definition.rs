@@ -319,19 +319,29 @@ impl Sweep {
                 let mut values = first.clone();
                 values[i] = axis.value(number);
                 self.scene_with(&values).map_err(|fault| {
-                    let name: Path = match axis.values {
-                        AxisValues::Range(..) => ("vary", i, "count").into(),
-                        AxisValues::List(_) => ("vary", i, ("values", number as usize)).into(),
-                    };
-                    InvalidInput::new(
-                        name,
-                        quote(&values[i]),
-                        format!("a value that the scene can have; with it, {fault}"),
-                    )
+                    let AxisValues::List(_) = axis.values else { return self.unfit(i, &values[i], &fault) };
+                    let name: Path = ("vary", i, ("values", number as usize)).into();
+                    let allowed = format!("a value that the scene can have; with it, {fault}");
+                    InvalidInput::new(name, quote(&values[i]), allowed)
                 })?;
             }
         }
         Ok(scene)
+    }
+
+    /// An error of a value within the interval of the varied field with this number.
+    fn unfit(&self, number: usize, value: &Value, fault: &InvalidInput) -> InvalidInput {
+        let axis = self.axes.get(number).and_then(|axis| match &axis.values {
+            AxisValues::Range(interval, _) => Some(interval),
+            AxisValues::List(_) => None,
+        });
+        let drawn = || Some(&self.random.as_ref()?.fields.get(number.checked_sub(self.axes.len())?)?.1);
+        let ends = axis.or_else(drawn).map_or_else(String::new, |all| format!("{} to {}", all.from, all.to));
+        let allowed = format!(
+            "an interval of values that the scene can have, where needed with \"whole_numbers\": true; with {}, {fault}",
+            quote(value)
+        );
+        InvalidInput::new(self.entry(number), ends, allowed)
     }
 
     /// The number of the varied field with an error.
@@ -347,11 +357,11 @@ impl Sweep {
                 InvalidInput::unknown(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
             }
             Some(i) if self.uncertain.is_some() && i >= self.axes.len() => fault.under(self.entry(i)),
-            Some(i) => {
-                let list = self.axes.get(i).is_some_and(|axis| matches!(axis.values, AxisValues::List(_)));
-                let name = if list { ("values", 0).into() } else { Path::from("from") };
-                fault.under(name.within(self.entry(i)))
-            }
+            Some(i) => match self.axes.get(i).map(|axis| &axis.values) {
+                Some(AxisValues::List(_)) => fault.under(Path::from(("values", 0)).within(self.entry(i))),
+                Some(AxisValues::Range(..)) => fault.under(Path::from("from").within(self.entry(i))),
+                None => self.unfit(i, &self.values(0)[i], &fault),
+            },
         }
     }
 

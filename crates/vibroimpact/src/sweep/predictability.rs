@@ -9,7 +9,8 @@ use super::file::read_tables_into;
 use super::values::Scale;
 use crate::draft::Draft;
 use crate::scene::FieldPath;
-use crate::scene::json::quote;
+use crate::scene::fields::POSITIVE;
+use crate::scene::json::{number, quote};
 
 /// A field over which the spread is mapped.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,8 +66,20 @@ impl Sweep {
             let allowed = "stated for one or two fields, each with its values";
             return Err(InvalidInput::new("--over", format!("{} fields", over.len()), allowed).into());
         }
+        // JSON has no numbers that are not finite
+        for Over { field, from, to, .. } in over {
+            for (end, value) in [("from", *from), ("to", *to)] {
+                InvalidInput::require_finite(end, value).map_err(|fault| fault.in_place(format!("--over {field}")))?;
+            }
+        }
         let mut uncertain = Map::new();
         for Blur { field, width } in blur {
+            let (size, shown) = match *width {
+                BlurWidth::Absolute(size) => (size, number(size)),
+                BlurWidth::Relative(share) => (share, format!("{}%", number(100.0 * share))),
+            };
+            let ok = size > 0.0 && size.is_finite();
+            InvalidInput::unless(ok, format!("--blur {field}"), shown, POSITIVE)?;
             let about = if over.iter().any(|over| over.field == *field) { None } else { Some(value(&scene, field)?) };
             let distribution = match width {
                 BlurWidth::Absolute(sd) => json!({ "normal": [about.unwrap_or(0.0), sd] }),

@@ -147,7 +147,7 @@ fn values_that_a_field_cannot_have_are_refused() {
     refused(|file| file["vary"][1]["values"][0] = json!(1.5), "vary[1].values[0] = 1.5 is not allowed");
     refused(
         |file| file["vary"][1] = json!({ "field": "modes", "from": 1, "to": 2, "count": 3 }),
-        "vary[1].count = 1.5 is not allowed",
+        "vary[1] = 1 to 2 is not allowed",
     );
 }
 
