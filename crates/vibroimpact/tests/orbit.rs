@@ -217,6 +217,13 @@ fn errors_name_the_field() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         assert!(message.contains(named), "{arguments:?}: {message}");
     }
+    // The transient, as many periods as are followed before the search, would be longer than any run.
+    let slow = fs::read_to_string(&scene).unwrap().replace("\"frequency_hz\": 1.3", "\"frequency_hz\": 1e-11");
+    fs::write(folder.path().join("slow.json"), slow).unwrap();
+    let output = run(folder.path(), &["orbit", "slow.json"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("loads = periods of together 10000000000000 s is not allowed"), "{message}");
     // No load is periodic.
     let still = fs::read_to_string(&scene).unwrap().replace("\"frequency_hz\": 1.3", "\"frequency_hz\": null");
     fs::write(folder.path().join("still.json"), still).unwrap();

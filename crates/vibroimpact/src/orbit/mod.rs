@@ -41,7 +41,7 @@ impl AssemblyScene {
     pub fn orbit_until(&self, settings: &OrbitSettings, stop: &dyn Fn() -> bool) -> Result<Found, InvalidInput> {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
-        let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| posed.in_scene(fault))?;
+        let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| in_scene(&posed, fault))?;
         let none = Found { outcome: INTERRUPTED, reason: None, orbit: None, nearest_closure: None, recurrence: None };
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
@@ -104,7 +104,7 @@ impl AssemblyScene {
         let build = |value: f64| pose(value).map_err(Fault::Scene);
         let in_scene = |fault| match fault {
             Fault::Scene(fault) => fault,
-            Fault::Assembly(fault) => posed.in_scene(fault),
+            Fault::Assembly(fault) => in_scene(&posed, fault),
         };
         let main = follow_branch(build, &branch, stop).map_err(in_scene)?;
         let mut doubled = Vec::new();
@@ -150,6 +150,17 @@ impl From<InvalidInput> for Fault {
     fn from(fault: InvalidInput) -> Fault {
         Fault::Assembly(fault)
     }
+}
+
+/// An error of the search. Its runs end after periods of the loads, not at the scene's `end_s`.
+fn in_scene(posed: &Posed, fault: InvalidInput) -> InvalidInput {
+    if fault.field != "end_s" {
+        return posed.in_scene(fault);
+    }
+    let found = fault.value.map_or_else(String::new, |found| found.to_string());
+    let allowed =
+        "loads of such a period that as many as are followed, of the motion and before the search, last at most 1e12 s";
+    InvalidInput::new("loads", format!("periods of together {found} s"), allowed)
 }
 
 /// The part of an assembly that determines the map over a period.
