@@ -153,7 +153,8 @@ class Start(Part):
     """Motion of the structure at the start, and distance of the striker. Displacements and velocities are positive towards
     the striker. Motions that are given in different fields are added.
 
-    ``amplitude_m_kg0_5``: Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
+    ``amplitude_m_kg0_5``: Amplitudes of the first mass-normalised modes (m kg^1/2), where modes are listed in the order of
+        the list; those of the rest are 0.
     ``gap_m``: Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
     ``moving_modes``: Modes whose motion is given at a location.
     ``rate_m_kg0_5_s``: Their rates (m kg^1/2 / s); those of the rest are 0.

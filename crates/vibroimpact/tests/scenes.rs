@@ -47,6 +47,39 @@ fn enums_have_the_names_of_scene_files() {
     assert_eq!(fault.to_string(), "end = glued is not allowed; it must be one of clamped, pinned, free, guided");
 }
 
+/// A structure given by three modes, listed in this order, that moves at the start; the lowest two are taken.
+fn listed(order: [usize; 3]) -> Value {
+    let by = |values: [f64; 3]| order.map(|k| values[k]);
+    json!({
+        "structure": { "kind": "modal", "omega_rad_s": by([100.0, 400.0, 900.0]), "damping_ratios": by([0.01, 0.02, 0.03]),
+                       "modal_mass_kg": by([1.0, 2.0, 3.0]), "points": { "tip": { "shape": by([1.0, 0.5, -0.7]) } } },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 },
+        "location": "tip", "modes": 2, "start": { "moving_modes": [{ "mode": 2, "velocity_m_s": 0.1 }] }
+    })
+}
+
+#[test]
+fn modes_may_be_listed_in_any_order() {
+    let solved = |order, amplitudes: Value, change: &dyn Fn(&mut Value)| {
+        let mut scene = listed(order);
+        scene["start"]["amplitude_m_kg0_5"] = amplitudes;
+        change(&mut scene);
+        let impact = Scene::from_value(&scene)?.impact()?;
+        Ok::<_, vibroimpact::InvalidInput>(impact.solve().unwrap())
+    };
+    let (sorted, none) = (solved([0, 1, 2], json!([1e-4, 2e-4]), &|_| {}).unwrap(), |_: &mut Value| {});
+    assert_eq!(solved([1, 0, 2], json!([2e-4, 1e-4]), &none).unwrap(), sorted);
+    assert_ne!(solved([1, 0, 2], json!([1e-4, 2e-4]), &none).unwrap(), sorted);
+    // of the highest mode, which is listed first and not taken
+    assert!(solved([2, 0, 1], json!([0, 1e-4]), &none).is_ok());
+    let fault = solved([2, 0, 1], json!([3e-4, 1e-4]), &none).unwrap_err();
+    assert_eq!(fault.field, "start.amplitude_m_kg0_5[0]");
+    assert!(fault.to_string().contains("0, because this mode is not one of the 2 lowest of the list"), "{fault}");
+    // an error names the place in the list
+    let fault = solved([2, 0, 1], json!([]), &|scene| scene["structure"]["damping_ratios"][1] = json!(-1)).unwrap_err();
+    assert_eq!(fault.field, "structure.damping_ratios[1]");
+}
+
 #[test]
 fn every_infinite_scene_of_the_gallery_runs() {
     use vibroimpact::vibroimpact_sim::infinite::{Outcome, Settings, solve};

@@ -64,7 +64,7 @@ pub struct Elastic {
     /// Motion of single modes at the start.
     pub start: Option<Start>,
     /// Participation `int m phi dx` of each mode in a uniform acceleration (kg^1/2), which gravity and a motion of the
-    /// ground need where the modes are given and not computed.
+    /// ground need where the modes are given and not computed; in the order of the list of modes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gravity_participation_kg0_5: Vec<f64>,
 }
@@ -79,12 +79,23 @@ pub enum Elastics {
     Structure(Structure),
 }
 
+impl Elastics {
+    /// For each mode in the order of the file its place by frequency, where modes are listed.
+    pub(super) fn ranks(&self) -> Option<Vec<usize>> {
+        match self {
+            Elastics::Structure(structure) => structure.ranks(),
+            Elastics::Rod(_) => None,
+        }
+    }
+}
+
 /// Motion of single modes at the start; what is given adds up.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "BodyStart")]
 pub struct Start {
-    /// Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
+    /// Amplitudes of the first mass-normalised modes (m kg^1/2), where modes are listed in the order of the list; those of the rest
+    /// are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub amplitude_m_kg0_5: Vec<f64>,
     /// Their rates (m kg^1/2 / s); those of the rest are 0.

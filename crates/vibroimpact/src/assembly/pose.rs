@@ -14,7 +14,7 @@ use super::load::require_finite;
 use super::seen::Seen;
 use crate::scene::fields::NOT_NEGATIVE;
 use crate::scene::json::number;
-use crate::scene::{InvalidInput, Place};
+use crate::scene::{InvalidInput, Place, by_frequency};
 
 /// The input of [`vibroimpact_sim::assembly`], and the names of its parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -274,20 +274,16 @@ impl<'a> Bodies<'a> {
 fn moving(body: &Elastic, seen: &mut Seen) -> Result<assembly::Body, InvalidInput> {
     let mut moving = assembly::Body::at_rest(seen.modes.clone());
     if let Some(start) = &body.start {
-        let count = seen.modes.len();
+        let ranks = body.structure.ranks();
         let of_start = |fault: InvalidInput| seen.of_body(fault.within("start"));
         for (field, first, all) in [
             ("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, &mut moving.amplitude),
             ("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, &mut moving.rate),
         ] {
-            if first.len() > count {
-                let allowed = format!("a list of at most {count} values, the number of modes");
-                return Err(of_start(InvalidInput::new(field, format!("{} values", first.len()), allowed)));
-            }
             for (k, value) in first.iter().enumerate() {
                 require_finite((field, k), *value).map_err(of_start)?;
-                all[k] = *value;
             }
+            *all = by_frequency(field, first, seen.modes.len(), ranks.as_deref()).map_err(of_start)?;
         }
         for (i, mode) in start.moving_modes.iter().enumerate() {
             let place = Place { location_m: mode.location_m, location: mode.location.as_deref() };

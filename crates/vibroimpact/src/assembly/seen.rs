@@ -158,16 +158,22 @@ impl<'a> Seen<'a> {
                 let allowed = format!("a list of finite numbers, one for each mode, because {needed_for} needs it");
                 Err(self.of_body(InvalidInput::missing(field, allowed)))
             }
-            // more values than modes are allowed only where the scene takes the first modes of its list
-            None if given.len() < self.modes.len() || body.modes.is_none() && given.len() > self.modes.len() => {
-                let allowed = format!("a list with one value for each mode, which is {}", self.modes.len());
-                Err(self.of_body(InvalidInput::new(field, values(), allowed)))
-            }
             None => {
+                let listed = body.structure.ranks().unwrap_or_default();
+                let mut all = vec![None; listed.len()];
                 for (k, value) in given.iter().enumerate() {
                     require_finite((field, k), *value).map_err(|fault| self.of_body(fault))?;
+                    if let Some(rank) = listed.get(k) {
+                        all[*rank] = Some(*value);
+                    }
                 }
-                Ok(given[..self.modes.len()].to_vec())
+                // a scene that takes the lowest modes of its list needs no values of the others
+                all.truncate(self.modes.len());
+                let complete = all.into_iter().collect::<Option<Vec<f64>>>();
+                complete.filter(|_| given.len() <= listed.len()).ok_or_else(|| {
+                    let allowed = format!("a list with one value for each mode, which is {}", self.modes.len());
+                    self.of_body(InvalidInput::new(field, values(), allowed))
+                })
             }
         }
     }

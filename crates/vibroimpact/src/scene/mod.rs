@@ -100,6 +100,7 @@ pub(crate) use place::{Place, require_count};
 pub use plate::{CONVERGED_FREQUENCY, Edge, Plate, PlateTheory};
 pub(crate) use remainder::{COMPLETE, compliance, require_elastic};
 pub use segment::Segment;
+pub(crate) use start::by_frequency;
 pub use start::{MovingMode, Start};
 pub use striker::Striker;
 pub use string::TautString;

@@ -15,7 +15,8 @@ use super::told::did_you_mean;
 
 /// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
 /// either at the one location of the impact (`shape_at_location`), or at several `points` of which the scene's `location`
-/// names the one that is struck. All lists run over the same modes.
+/// names the one that is struck. All lists run over the same modes, in any order. The number of a mode counts from the lowest
+/// frequency, as for every structure; of modes of the same frequency the first in the lists comes first.
 ///
 /// ```
 /// use vibroimpact::scene::{Modal, Point};
@@ -161,7 +162,21 @@ impl Modal {
         }
     }
 
-    /// All modes with their shapes at a point.
+    /// For each listed mode its place among all of them by frequency.
+    pub(super) fn ranks(&self) -> Vec<usize> {
+        let mut ranks = vec![0; self.omega_rad_s.len()];
+        self.by_frequency().into_iter().enumerate().for_each(|(rank, listed)| ranks[listed] = rank);
+        ranks
+    }
+
+    /// The places in the lists, by ascending frequency.
+    fn by_frequency(&self) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..self.omega_rad_s.len()).collect();
+        places.sort_by(|a, b| self.omega_rad_s[*a].total_cmp(&self.omega_rad_s[*b]));
+        places
+    }
+
+    /// All modes with their shapes at a point, by ascending frequency.
     pub(super) fn modes(&self, location: Option<&str>) -> Result<Vec<Mode>, InvalidInput> {
         let seen = self.seen_from(location)?;
         self.modes_of(&seen).map_err(|fault| fault.within("structure"))
@@ -191,7 +206,7 @@ impl Modal {
         // the solver checks the ranges; its error is reported with the list that contains the number
         let structure = Structure { modes };
         match Solver::new(&structure) {
-            Ok(_) => Ok(structure.modes),
+            Ok(_) => Ok(self.by_frequency().into_iter().map(|listed| structure.modes[listed]).collect()),
             Err(fault) => Err(self.in_lists(seen, fault)),
         }
     }

@@ -4,7 +4,7 @@ use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::{self, Mode};
 
 use super::definition::Scene;
-use super::start::Start;
+use super::start::{Start, by_frequency};
 
 impl Scene {
     /// The start as input of the solver, for these modes with their shapes at the point of impact. The last `remainder` of them are
@@ -18,9 +18,13 @@ impl Scene {
     }
 
     fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {
+        let ranks = self.structure.ranks();
+        let of = |field: &str, first: &[f64]| {
+            by_frequency(field, first, modes.len(), ranks.as_deref()).map_err(|fault| fault.within("start"))
+        };
         let mut posed = modal::Start {
-            amplitude: padded("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
-            rate: padded("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
+            amplitude: of("amplitude_m_kg0_5", &start.amplitude_m_kg0_5)?,
+            rate: of("rate_m_kg0_5_s", &start.rate_m_kg0_5_s)?,
             gap_m: start.gap_m,
         };
         let here = self.place();
@@ -42,15 +46,4 @@ impl Scene {
         }
         Ok(posed)
     }
-}
-
-/// The values of the first modes, and 0 for the others.
-fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
-    if first.len() > count {
-        let allowed = format!("a list of at most {count} values, the number of modes");
-        return Err(InvalidInput::new(["start", field], format!("{} values", first.len()), allowed));
-    }
-    let mut all = first.to_vec();
-    all.resize(count, 0.0);
-    Ok(all)
 }

@@ -32,7 +32,8 @@ pub struct Start {
     /// Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
     #[serde(default)]
     pub gap_m: f64,
-    /// Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
+    /// Amplitudes of the first mass-normalised modes (m kg^1/2), where modes are listed in the order of the list; those of the rest
+    /// are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub amplitude_m_kg0_5: Vec<f64>,
     /// Their rates (m kg^1/2 / s); those of the rest are 0.
@@ -59,6 +60,33 @@ pub struct MovingMode {
     /// Velocity there (m/s); 0 when left out.
     #[serde(default)]
     pub velocity_m_s: f64,
+}
+
+/// Values of the first modes, where modes are listed in the order of the list, as those of `count` modes by ascending frequency; the
+/// others are 0. `ranks` are those of the structure.
+pub(crate) fn by_frequency(
+    field: &str,
+    first: &[f64],
+    count: usize,
+    ranks: Option<&[usize]>,
+) -> Result<Vec<f64>, InvalidInput> {
+    if first.len() > count {
+        let allowed = format!("a list of at most {count} values, the number of modes");
+        return Err(InvalidInput::new(field, format!("{} values", first.len()), allowed));
+    }
+    let mut all = vec![0.0; count];
+    for (k, value) in first.iter().enumerate() {
+        let rank = ranks.and_then(|ranks| ranks.get(k).copied()).unwrap_or(k);
+        match all.get_mut(rank) {
+            Some(of_mode) => *of_mode = *value,
+            None if *value == 0.0 => {}
+            None => {
+                let allowed = format!("0, because this mode is not one of the {count} lowest of the list");
+                return Err(InvalidInput::new((field, k), number(*value), allowed));
+            }
+        }
+    }
+    Ok(all)
 }
 
 /// A mode whose shape at the location is below this share of the largest one has a node there.

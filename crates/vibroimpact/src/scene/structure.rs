@@ -163,6 +163,14 @@ impl Structure {
         }
     }
 
+    /// For each mode in the order of the file its place by frequency, where modes are listed.
+    pub(crate) fn ranks(&self) -> Option<Vec<usize>> {
+        match self {
+            Structure::Modal(listed) => Some(listed.ranks()),
+            _ => None,
+        }
+    }
+
     /// Participation of the first `count` modes in a uniform acceleration (kg^1/2), where modes are computed.
     pub(crate) fn participation_with(
         &self,
