@@ -10,12 +10,21 @@
 //! ```
 //!
 //! A quantile is not such a statistic: where the density changes within its scatter, the quantiles of the replicates have another
-//! distribution than that of all draws. The error of `Q(p)` follows from the standard error `s_p` of the share of the draws below it,
-//! so that two standard errors either way span an interval of 95 %:
+//! distribution than that of all draws. The error of `Q(p)` follows from the standard error `s_p` of the share of the draws below it.
+//! One part of it is the scatter `s_r` of this share by equation (1). It may be 0, because scrambled points are stratified: all
+//! replicates may have the same share below `Q(p)`. The other part is the distance of the draws: the share is `p` anywhere between
+//! the two draws next to the quantile, each of which is exponentially distributed about `1/N` away for `N` draws in all, so that the
+//! middle between them has the standard deviation `1/(sqrt(2) N)`:
 //!
 //! ```text
-//! s = ( Q(p + 2 s_p) - Q(p - 2 s_p) ) / 4.                                                  (4)
+//! s_p^2 = s_r^2 + 1/(2 N^2),                                                                (4)
+//! s = ( Q(p + 2 s_p) - Q(p - 2 s_p) ) / 4.                                                  (5)
 //! ```
+//!
+//! Two standard errors either way thus span as much as those of the share do, as for the quantiles of independent draws (David and
+//! Nagaraja 2003, section 7.1). Where the distribution jumps, this interval consists of little but a gap between two neighbouring
+//! draws, and the quantile may be at either side of it: `s` is then half the distance of `Q(p)` from the farther end. Where the
+//! interval reaches beyond all draws, they do not tell the error.
 //!
 //! The indices of Sobol' show which field causes the variance `V`. Each draw is then a group of `k + 2` impacts: of two
 //! independent points `a` and `b`, and of `ab_j`, which is `a` with the field `j` of `b`:

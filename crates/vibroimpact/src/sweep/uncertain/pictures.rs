@@ -60,7 +60,8 @@ fn of_one(output: &str, found: &OutputDistribution) -> (&'static str, Figure, St
     };
     let quantiles = |of: fn(&super::Quantile) -> f64| found.quantiles.iter().map(of).collect::<Vec<_>>();
     let (value, share) = (quantiles(|quantile| quantile.value), quantiles(|quantile| quantile.share));
-    let error = quantiles(|quantile| 2.0 * quantile.standard_error.unwrap_or(0.0));
+    // NaN draws no bar
+    let error = quantiles(|quantile| 2.0 * quantile.standard_error.unwrap_or(f64::NAN));
     let of_output = || Axis { integers: whole, ..axis_of_result(output) };
     let histogram = Panel::new(of_output(), Axis::new("share of the draws")).with(Series::step(&edges, &shares));
     let cumulative = Panel::new(of_output(), Axis::new("share below").limits(0.0, 1.0))
@@ -69,7 +70,7 @@ fn of_one(output: &str, found: &OutputDistribution) -> (&'static str, Figure, St
     let title = format!("Distribution of {}", label(output));
     let figure = Figure::new(title).row([histogram, cumulative]).width(860.0);
     let caption = "Left: shares of the draws. Right: the share below a value, and quantiles with two standard errors \
-                   either way.";
+                   either way, where these are known.";
     match &found.indices {
         None => ("distribution", figure, caption.to_owned()),
         Some(indices) => {
@@ -82,7 +83,7 @@ fn of_one(output: &str, found: &OutputDistribution) -> (&'static str, Figure, St
                 let y: Vec<f64> = rows.iter().map(|row| row + shift).collect();
                 let values: Vec<f64> = indices.values().map(|found| which(found).value).collect();
                 let errors: Vec<f64> =
-                    indices.values().map(|found| 2.0 * which(found).standard_error.unwrap_or(0.0)).collect();
+                    indices.values().map(|found| 2.0 * which(found).standard_error.unwrap_or(f64::NAN)).collect();
                 Series::level_error_bars(&values, &y, &errors, marker)
             };
             let panel = panel

@@ -15,10 +15,17 @@ fn told(figure: Estimate) -> String {
     match standard_error {
         Some(error) if error > 0.0 => {
             // two digits of the error, as many decimals of the figure
-            let decimals = (1 - error.log10().floor() as i32).clamp(0, 15) as usize;
-            format!("{value:.decimals$} ± {error:.decimals$}")
+            let order = error.log10().floor();
+            match (1.0 - order) as usize {
+                decimals @ ..16 => format!("{value:.decimals$} ± {error:.decimals$}"),
+                _ => {
+                    let decimals = (value.abs().log10().floor() - order + 1.0) as usize;
+                    format!("{value:.decimals$e} ± {error:.1e}")
+                }
+            }
         }
-        _ => significant(value, 6),
+        Some(_) => significant(value, 6),
+        None => format!("{}, standard error unknown", significant(value, 6)),
     }
 }
 
@@ -35,7 +42,7 @@ pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String
     if let (Some(requested), Some(false)) = (found.requested_error, found.reached) {
         let largest = match found.largest_error() {
             error if error.is_finite() => format!("the largest standard error is {}", significant(error, 2)),
-            _ => "some replicates have no value".to_owned(),
+            _ => "the draws are too few to know every standard error".to_owned(),
         };
         let told = format!("NOT REACHED: {largest}, and {requested} was requested; allow more draws (sampling.draws)");
         line("sampling error", told);
