@@ -140,6 +140,22 @@ fn indices_are_those_of_the_draws_that_have_a_result() {
     assert!(told.contains(&format!("of the {groups} groups of draws in which every draw has a value")), "{told}");
 }
 
+/// The restitution of a linear contact does not depend on the speed; its rounding errors do.
+#[test]
+fn an_output_that_does_not_vary_has_no_indices() {
+    let mut sweep = on_a_slow_mode();
+    sweep["scene"]["contact"] = json!({ "law": "linear-spring", "stiffness_n_m": 1e6 });
+    sweep["uncertain"] = json!({ "striker.speed_m_s": { "uniform": [0.5, 1.5] } });
+    sweep["sampling"] = json!({ "draws": 192, "indices": true });
+    let (bench, summary) = summary(&sweep);
+    let found = &summary["distributions"]["restitution"];
+    assert_eq!((&found["indices"], &found["index_groups"]), (&json!(null), &json!(64)));
+    let told = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    assert!(told.contains("not defined, because restitution does not vary in 64 groups of draws"), "{told}");
+    // the lowest quantile of so few draws is known, but not how well
+    assert!(found["quantiles"][0]["standard_error"].is_null() && told.contains("standard error unknown"), "{told}");
+}
+
 #[test]
 fn counts_have_bars_at_whole_numbers() {
     let mut sweep = on_a_slow_mode();

@@ -58,9 +58,9 @@ pub struct OutputDistribution {
     /// Numbers of draws between the least and the greatest value. For outputs that are whole numbers, such as counts, the intervals
     /// are centred at whole numbers.
     pub histogram: Histogram,
-    /// Indices of Sobol' by field, if they were requested and the output varies.
+    /// Indices of Sobol' by field; null if they were not requested, and for an output that does not vary beyond rounding errors.
     pub indices: Option<BTreeMap<String, SobolIndices>>,
-    /// Number of groups of draws behind the indices: those in which every draw has the output. Null without indices.
+    /// Number of groups of draws behind the indices: those in which every draw has the output. Null if no indices were requested.
     #[serde(default)]
     pub index_groups: Option<u64>,
     /// The requested standard error of the mean and of every quantile; null if none was requested.
@@ -96,7 +96,7 @@ impl OutputDistribution {
         let widths = Estimate::new(width, high.shifts().zip(low.shifts()).map(|(high, low)| high - low));
         // of equation (4), the scatter is that of both shares together
         let resolution = FRACTION_OF_A_DRAW * high.rate.hypot(low.rate) / all.len() as f64;
-        let (indices, index_groups) = fields.and_then(|fields| indices(outputs, draws, fields)).unzip();
+        let (indices, index_groups) = fields.map(|fields| indices(outputs, draws, fields)).unzip();
         let mut found = OutputDistribution {
             draws: outputs.len() as u64,
             with_value: all.len() as u64,
@@ -108,7 +108,7 @@ impl OutputDistribution {
             },
             quantiles: quantiles.iter().map(|located| located.quantile).collect(),
             histogram: Histogram::of(&all),
-            indices,
+            indices: indices.flatten(),
             index_groups,
             requested_error,
             reached: None,

@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::design::Draws;
 use super::figure::{Estimate, mean};
 
+/// Standard deviation, relative to the largest value, up to which an output does not vary. Rounding errors leave up to about 1e-13 of
+/// an output that is the same in exact arithmetic, such as the restitution of a linear contact at different speeds.
+const ROUNDING: f64 = 1e-12;
+
 /// The shares of the variance that a field causes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SobolIndices {
@@ -48,46 +52,51 @@ impl Sums {
         }
     }
 
+    fn variance(&self) -> f64 {
+        self.squares / self.groups - (0.5 * (self.a + self.b) / self.groups).powi(2)
+    }
+
     /// First and total index.
     fn shares(&self) -> [f64; 2] {
-        let n = self.groups;
-        let variance = self.squares / n - (0.5 * (self.a + self.b) / n).powi(2);
+        let (n, variance) = (self.groups, self.variance());
         [self.first / n / variance, self.total / n / variance]
     }
 }
 
-/// The indices of these fields, and the number of groups that they are from: those all of whose draws have a value. `None` if
-/// there is none, or if the draws do not vary.
+/// The indices of these fields, and the number of groups that they are from: those all of whose draws have a value. No indices if
+/// there is no group, or if the draws do not vary.
 pub(super) fn indices(
     values: &[f64],
     draws: Draws,
     fields: &[String],
-) -> Option<(BTreeMap<String, SobolIndices>, u64)> {
+) -> (Option<BTreeMap<String, SobolIndices>>, u64) {
     let groups = || {
         let all = values.chunks_exact(draws.impacts as usize).enumerate();
         all.filter(|(_, group)| group.iter().all(|value| !value.is_nan()))
     };
     // the mean is subtracted, which avoids rounding errors and the scatter of f(b) in equation (2)
-    let middle = mean(&groups().flat_map(|(_, group)| group).copied().collect::<Vec<f64>>());
+    let all: Vec<f64> = groups().flat_map(|(_, group)| group).copied().collect();
+    let (middle, largest) = (mean(&all), all.iter().fold(0.0f64, |largest, value| largest.max(value.abs())));
     let of = |(field, name): (usize, &String)| {
         let mut sums = vec![Sums::default(); draws.replicates as usize];
         for (number, group) in groups() {
             let replicate = number % sums.len();
             sums[replicate].add(group[0] - middle, group[1] - middle, group[field + 2] - middle);
         }
-        let all = sums.iter().fold(Sums::default(), |all, sums| all.plus(*sums)).shares();
-        let estimate = |which: usize| Estimate::new(all[which], sums.iter().map(|sums| sums.shares()[which]));
-        let known = all.iter().all(|share| share.is_finite());
-        known.then(|| (name.clone(), SobolIndices { first: estimate(0), total: estimate(1) }))
+        let all = sums.iter().fold(Sums::default(), |all, sums| all.plus(*sums));
+        let shares = all.shares();
+        let estimate = |which: usize| Estimate::new(shares[which], sums.iter().map(|sums| sums.shares()[which]));
+        let varies = all.variance().sqrt() > ROUNDING * largest && shares.iter().all(|share| share.is_finite());
+        varies.then(|| (name.clone(), SobolIndices { first: estimate(0), total: estimate(1) }))
     };
-    let found: Option<BTreeMap<String, SobolIndices>> = fields.iter().enumerate().map(of).collect();
-    Some((found?, groups().count() as u64))
+    (fields.iter().enumerate().map(of).collect(), groups().count() as u64)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::FieldPath;
+    use crate::sweep::uncertain::sobol::mixed;
     use crate::sweep::uncertain::{Distribution, Sampling, Sequence, Uncertain};
 
     /// The indices of a function of three numbers that are uniform from 0 to 1.
@@ -97,7 +106,7 @@ mod tests {
         let sampling = Sampling { seed: 3, draws, sequence, replicates: 16, indices: true };
         let uncertain = Uncertain::new(fields.to_vec(), sampling);
         let values: Vec<f64> = (0..uncertain.draws().count()).map(|number| f(&uncertain.draw(number))).collect();
-        indices(&values, uncertain.draws(), &names).unwrap().0.into_values().collect()
+        indices(&values, uncertain.draws(), &names).0.unwrap().into_values().collect()
     }
 
     /// Within four standard errors of the exact value, and with a small standard error.
@@ -131,12 +140,27 @@ mod tests {
         for number in [0, 5, 4099] {
             values[number] = f64::NAN;
         }
-        let (found, groups) = indices(&values, uncertain.draws(), &names).unwrap();
+        let (found, groups) = indices(&values, uncertain.draws(), &names);
+        let found = found.unwrap();
         assert_eq!(groups, uncertain.draws().count() / 4 - 3);
         holds(&found["x"].first, 0.1, 1e-3);
         holds(&found["y"].total, 0.9, 1e-3);
         values.iter_mut().step_by(4).for_each(|value| *value = f64::NAN);
-        assert_eq!(indices(&values, uncertain.draws(), &names), None);
+        assert_eq!(indices(&values, uncertain.draws(), &names), (None, 0));
+    }
+
+    #[test]
+    fn what_varies_by_rounding_alone_has_no_indices() {
+        let names = ["x".to_owned()];
+        let draws = Draws { impacts: 3, replicates: 2, groups: 16 };
+        let of = |scatter: f64| -> Vec<f64> {
+            let noise = |number: u64| (mixed(1, number) >> 11) as f64 * 0.5f64.powi(53);
+            (0..draws.count()).map(|number| 0.7 + scatter * noise(number)).collect()
+        };
+        for (scatter, varies) in [(0.0, false), (1e-13, false), (1e-11, true)] {
+            let (found, groups) = indices(&of(scatter), draws, &names);
+            assert_eq!((found.is_some(), groups), (varies, 32), "{scatter}");
+        }
     }
 
     #[test]

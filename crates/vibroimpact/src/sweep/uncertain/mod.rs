@@ -36,7 +36,8 @@
 //!
 //! `S_j` is the share of the variance that would vanish if field `j` were known, `T_j` the share that would remain if all others
 //! were known. Draws without the output (an impact without restitution, a run that was stopped) are counted by their outcome; the
-//! statistics are those of the other draws, and the indices those of the groups in which every draw has the output.
+//! statistics are those of the other draws, and the indices those of the groups in which every draw has the output. If `V` is within
+//! the rounding errors of the output, the output does not vary, and indices are not defined.
 
 mod collect;
 mod design;

@@ -56,8 +56,14 @@ pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String
     for (field, indices) in indices.iter().flatten() {
         line(field, format!("first index {}, total {}", told(indices.first), told(indices.total)));
     }
-    if let Some(groups) = found.index_groups.filter(|_| with_value < draws) {
-        line("indices", format!("of the {groups} groups of draws in which every draw has a value"));
+    match found.index_groups {
+        Some(groups @ 1..) if indices.is_none() => {
+            line("indices", format!("not defined, because {output} does not vary in {groups} groups of draws"));
+        }
+        Some(groups) if with_value < draws => {
+            line("indices", format!("of the {groups} groups of draws in which every draw has a value"));
+        }
+        _ => {}
     }
     lines
 }
