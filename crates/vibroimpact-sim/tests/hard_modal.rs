@@ -669,3 +669,21 @@ fn a_beam_that_is_released_at_a_stop_presses_it() {
     let [same, peak_n] = [coarse, fine].map(|solution| solution.sub_impacts[0].peak_force_n);
     assert!(peak_n > 1.0 && (same / peak_n - 1.0).abs() < 1e-7, "{same} {peak_n}");
 }
+
+/// Bodies that move along together, touching or at a distance, and whose speeds differ by rounding alone.
+#[test]
+fn bodies_of_equal_speed_do_not_touch() {
+    let free = beam([End::Free, End::Free]).modes(12).unwrap();
+    for place in [0.3, 0.5] {
+        let structure = Structure::from_modes(free.seen_from(place).unwrap(), 0.01);
+        let solver = Solver::new(&structure).unwrap();
+        for (speed_m_s, gap_m) in [(1.0, 0.0), (0.3, 0.0), (-7.7, 0.0), (0.1, 1e-4)] {
+            let mut start = Start { gap_m, ..Start::at_rest(structure.modes.len()) };
+            start.rate[0] = -speed_m_s / structure.modes[0].shape;
+            let striker = Striker { mass_kg: 0.1, speed_m_s };
+            let solution = solver.solve(&striker, &Hertz::new(1e9).unwrap(), Some(&start), &settings(1e-9)).unwrap();
+            assert_eq!(solution.outcome, Outcome::NoContact, "{place} {speed_m_s} {gap_m}: {solution:?}");
+            assert!(solution.counts.flight_steps < 10, "{solution:?}");
+        }
+    }
+}

@@ -234,14 +234,15 @@ impl FlightBounds {
 
     /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of all but
     /// the elastic modes, relative to the overlap of touch. `bend` bounds the second derivative by the loads (m/s^2), and `noise`
-    /// is the rounding of the overlap (m).
+    /// is the rounding of the overlap (m) and of its rate (m/s): bodies that approach no faster than that without vibrating move
+    /// along together.
     #[inline(always)]
     pub fn safe_time(
         &self,
         link: &Link,
         (mut overlap, mut rate): (f64, f64),
         bend: f64,
-        noise: impl Fn() -> f64,
+        noise: impl Fn() -> (f64, f64),
         (amplitude, mode_rate): (&[f64], &[f64]),
     ) -> f64 {
         let (mut next, mut best, mut rounding) = (0, 0.0f64, None);
@@ -265,10 +266,13 @@ impl FlightBounds {
             let mut separation = -overlap - above;
             // surfaces that have just parted overlap by rounding, within which the modes above may move, too
             if separation < 0.0 && (above == 0.0 || self.uses == 0) {
-                let noise = *rounding.get_or_insert_with(&noise);
+                let (noise, _) = *rounding.get_or_insert_with(&noise);
                 if above <= noise && separation >= -noise {
                     separation = 0.0;
                 }
+            }
+            if above == 0.0 && curvature == 0.0 && separation >= 0.0 && rate > 0.0 && rate <= noise().1 {
+                return f64::INFINITY;
             }
             // a parabola that is still above zero at the best time yet has its root beyond it
             let at_best = separation - best * (rate + 0.5 * curvature * best);

@@ -27,7 +27,7 @@ const ALIKE: f64 = 1e-3;
 const MOST_PASSED: usize = 16;
 
 impl<'a> March<'a> {
-    /// Contacts that touch at the start close at once, unless nothing can move them.
+    /// Contacts that touch at the start close at once, unless nothing can move them or press them together.
     pub(super) fn begin(&mut self) {
         self.depart();
         for c in 0..self.states.len() {
@@ -44,10 +44,7 @@ impl<'a> March<'a> {
             if self.states[c].overlap > noise {
                 self.touch(c, self.states[c].overlap);
                 self.pass_boundaries(c);
-            } else if self.states[c].overlap >= -noise
-                && self.system.links[c].mobility > 0.0
-                && !self.parts_from_here(c)
-            {
+            } else if self.states[c].overlap >= -noise && self.system.links[c].mobility > 0.0 && self.may_press(c) {
                 self.touch(c, 0.0);
             }
         }
@@ -67,15 +64,18 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether surfaces that touch begin to separate.
-    fn parts_from_here(&self, c: usize) -> bool {
+    /// Whether surfaces that touch begin to press on each other, or may do so by loads and other contacts. Surfaces that only move
+    /// along together do not.
+    fn may_press(&self, c: usize) -> bool {
         let reach = self.reach.min(self.settings.end_s);
         // rigid bodies alone have no time scale
         let reach = if reach.is_finite() { reach } else { 1.0 };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), reach);
         series[0] = 0.0;
-        let differs = first_difference(&series, reach, (self.noise(c), self.rate_noise(c)));
-        differs.is_some_and(|(_, overlap)| overlap < 0.0)
+        match first_difference(&series, reach, (self.noise(c), self.rate_noise(c))) {
+            Some((_, overlap)) => overlap > 0.0,
+            None => !self.loads.is_empty() || self.states.len() > 1,
+        }
     }
 
     /// The momentum that the loads give a contact during its deformation (N s), a scale for contacts that only loads have closed.

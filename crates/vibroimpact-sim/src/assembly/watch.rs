@@ -85,7 +85,7 @@ impl<'a> March<'a> {
         let Phase::Open { bounds: Some(bounds), .. } = &self.states[c].phase else { return };
         let safe = vectorized(
             #[inline(always)]
-            || bounds.safe_time(link, (overlap, rate), bend, || self.noise(c), motion),
+            || bounds.safe_time(link, (overlap, rate), bend, || (self.noise(c), self.rate_noise(c)), motion),
         );
         let until = self.time_s + safe;
         if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
