@@ -670,6 +670,29 @@ fn a_beam_that_is_released_at_a_stop_presses_it() {
     assert!(peak_n > 1.0 && (same / peak_n - 1.0).abs() < 1e-7, "{same} {peak_n}");
 }
 
+/// The same with a speed far below that of the swing: the vibration is the scale of the contact, not this speed.
+#[test]
+fn a_released_beam_takes_as_many_steps_with_a_tiny_speed() {
+    let modes = pinned(10, 0.01, 0.4).modes;
+    let mut start = Start::at_rest(modes.len());
+    start.amplitude[0] = -1e-3 / modes[0].shape;
+    let shape = modes[0].shape;
+    let structure = Structure { modes };
+    let solver = Solver::new(&structure).unwrap();
+    let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
+    let mut steps = |speed_m_s: f64| {
+        start.rate[0] = speed_m_s / shape;
+        let solution = solver.solve(&stop, &Hertz::new(1e9).unwrap(), Some(&start), &settings(1e-9)).unwrap();
+        assert_eq!(solution.outcome, Outcome::Sustained, "{speed_m_s}");
+        solution.counts.contact_steps
+    };
+    let at_rest = steps(0.0);
+    for speed_m_s in [1e-12, 1e-9, 1e-6] {
+        let found = steps(speed_m_s);
+        assert!(found < 2 * at_rest, "{speed_m_s}: {found}, {at_rest} from rest");
+    }
+}
+
 /// Bodies that move along together, touching or at a distance, and whose speeds differ by rounding alone.
 #[test]
 fn bodies_of_equal_speed_do_not_touch() {

@@ -45,6 +45,11 @@ impl<'a> March<'a> {
                 self.touch(c, self.states[c].overlap);
                 self.pass_boundaries(c);
             } else if self.states[c].overlap >= -noise && self.system.links[c].mobility > 0.0 && self.may_press(c) {
+                // without rigid-body motion the surfaces vibrate, and their speed now is only a part of the scale of a vibration
+                if self.system.links[c].rigid.is_empty() && self.states[c].inverse_mass > 0.0 {
+                    let vibration = self.speed_of_displaced_modes(c) / self.states[c].inverse_mass;
+                    self.states[c].momentum = self.states[c].momentum.max(vibration);
+                }
                 self.touch(c, 0.0);
             }
         }
@@ -76,6 +81,12 @@ impl<'a> March<'a> {
             Some((_, overlap)) => overlap > 0.0,
             None => !self.loads.is_empty() || self.states.len() > 1,
         }
+    }
+
+    /// The relative speed that displaced modes can give the surfaces of a contact (m/s).
+    fn speed_of_displaced_modes(&self, c: usize) -> f64 {
+        let displaced = |(k, psi): &(usize, f64)| (psi * self.system.omega[*k] * self.amplitude[*k]).abs();
+        self.system.links[c].elastic.iter().map(displaced).sum()
     }
 
     /// The momentum that the loads give a contact during its deformation (N s), a scale for contacts that only loads have closed.
@@ -154,8 +165,7 @@ impl<'a> March<'a> {
             // it has no speed of its own: the momentum that it will transmit is that of the other contacts or, at rest, that which
             // displaced modes can give it
             let others = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
-            let displaced = |(k, psi): &(usize, f64)| (psi * self.system.omega[*k] * self.amplitude[*k]).abs();
-            let speed = if others > 0.0 { others } else { link.elastic.iter().map(displaced).sum() };
+            let speed = if others > 0.0 { others } else { self.speed_of_displaced_modes(c) };
             self.states[c].momentum = speed / inverse;
         }
         let alone = self.states.iter().filter(|state| state.is_closed()).count() == 1;
