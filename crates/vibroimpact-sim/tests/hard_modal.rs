@@ -710,3 +710,20 @@ fn bodies_of_equal_speed_do_not_touch() {
         }
     }
 }
+
+#[test]
+fn frequencies_beyond_the_range_of_the_solver_are_rejected() {
+    let with = |omega_rad_s: f64| Structure { modes: vec![Mode { omega_rad_s, damping_ratio: 0.0, shape: 1.0 }] };
+    assert!([0.0, 1e-30, 1e15].iter().all(|omega| Solver::new(&with(*omega)).is_ok()));
+    for omega in [-1.0, 1e-300, 1e-50, 2e15] {
+        let fault = Solver::new(&with(omega)).map(drop).unwrap_err();
+        assert_eq!(fault.allowed, "0 for a rigid body, or a number from 1e-30 to 1e15 rad/s", "{omega}");
+    }
+    // an elastic mode as slow as that does not vibrate during the impact
+    let solved = |omega: f64| {
+        let striker = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
+        run(&with(omega), &striker, &Hertz::new(1e9).unwrap().into())
+    };
+    let [slowest, slow] = [1e-30, 1e-6].map(solved);
+    assert!((slowest.restitution.unwrap() - slow.restitution.unwrap()).abs() < 1e-9, "{slowest:?} {slow:?}");
+}

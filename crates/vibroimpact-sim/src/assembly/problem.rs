@@ -10,6 +10,11 @@ pub(crate) const SCALE_MAX: f64 = 1e30;
 const SLOPE_MAX_N_S: f64 = 1e60;
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
+/// Least frequency of an elastic mode (rad/s), with a period far beyond the age of the universe. Static deflections, which grow with its
+/// inverse square, stay within the range of the solver.
+const OMEGA_MIN_RAD_S: f64 = 1e-30;
+/// The allowed frequencies of a mode.
+pub(crate) const OMEGA_ALLOWED: &str = "0 for a rigid body, or a number from 1e-30 to 1e15 rad/s";
 /// Smallest tolerance.
 pub(crate) const FINEST_TOLERANCE: f64 = 1e-13;
 /// The largest steady motion of a rigid mode at a contact (m): rounding is then below 1e-9 m.
@@ -307,13 +312,17 @@ impl<L> Assembly<L> {
     }
 }
 
+/// Whether a mode may have this frequency (rad/s).
+pub(crate) fn is_frequency(omega_rad_s: f64) -> bool {
+    omega_rad_s == 0.0 || (OMEGA_MIN_RAD_S..=OMEGA_MAX_RAD_S).contains(&omega_rad_s)
+}
+
 impl Body {
     fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
             let of = |quantity| ("modes", k, quantity);
             let omega = mode.omega_rad_s;
-            let allowed = "a number from 0 (for a rigid body) to 1e15 rad/s";
-            InvalidInput::unless((0.0..=OMEGA_MAX_RAD_S).contains(&omega), of("omega_rad_s"), omega, allowed)?;
+            InvalidInput::unless(is_frequency(omega), of("omega_rad_s"), omega, OMEGA_ALLOWED)?;
             let zeta = mode.damping_ratio;
             InvalidInput::unless((0.0..=1e6).contains(&zeta), of("damping_ratio"), zeta, "a number from 0 to 1e6")?;
         }

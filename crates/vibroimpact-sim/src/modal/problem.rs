@@ -1,12 +1,10 @@
 //! The problem: a structure with its modes, a striker, and the initial motion.
 
 use crate::assembly::BodyMode;
-use crate::assembly::problem::{SCALE_MAX, require_all_finite};
+use crate::assembly::problem::{OMEGA_ALLOWED, SCALE_MAX, is_frequency, require_all_finite};
 use beam_modes::PointMode;
 use invalid_input::InvalidInput;
 
-/// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
-const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// The least mass (kg), the reciprocal of the largest: wide enough for any unit system, narrow enough that no product overflows.
 const SCALE_MIN: f64 = 1e-30;
 /// A mode that moves less than this (kg^-1/2) at the contact is not moved by it.
@@ -99,8 +97,8 @@ impl Structure {
     pub fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
             let fault = |field, value: f64, allowed| Err(InvalidInput::new(("modes", k, field), value, allowed));
-            if !(0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s) {
-                return fault("omega_rad_s", mode.omega_rad_s, "a number from 0 (for a rigid body) to 1e15 rad/s");
+            if !is_frequency(mode.omega_rad_s) {
+                return fault("omega_rad_s", mode.omega_rad_s, OMEGA_ALLOWED);
             }
             if !(0.0..=1e6).contains(&mode.damping_ratio) {
                 return fault("damping_ratio", mode.damping_ratio, "0 up to 1e6");
