@@ -338,3 +338,16 @@ fn usage_errors_exit_with_2_as_well() {
     assert!(stdout(&run(folder.path(), &["simulate", "--help"])).contains("Examples:"));
     assert!(stdout(&run(folder.path(), &["--help"])).contains("\"structure\""));
 }
+
+#[test]
+fn columns_of_the_table_of_modes_never_run_together() {
+    let modes = [(0.0, 1e30), (1e-30, -1e30), (1e15, 1e-100), (1.0, 0.25)];
+    let mode =
+        |(omega_rad_s, shape)| vibroimpact::vibroimpact_sim::modal::Mode { omega_rad_s, damping_ratio: 0.0, shape };
+    let text = vibroimpact::text::modes(&modes.map(mode), None);
+    for (line, (_, shape)) in text.lines().skip(1).zip(modes) {
+        let cells: Vec<&str> = line.split_whitespace().collect();
+        assert!(cells.len() == 4 && cells[3].parse() == Ok(shape), "{line}");
+    }
+    assert!(text.ends_with("        0.25000000\n"), "{text}");
+}

@@ -168,7 +168,12 @@ pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     let mut text = format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape (kg^-1/2)");
     for (k, mode) in modes.iter().enumerate() {
         let frequency = mode.omega_rad_s / std::f64::consts::TAU;
-        let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);
+        // within the width of the column, and with a digit that is not 0
+        let shape = match mode.shape {
+            shape if shape == 0.0 || (1e-6..1e12).contains(&shape.abs()) => format!("{shape:.8}"),
+            shape => format!("{shape:.8e}"),
+        };
+        let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{shape:>26}", k + 1, mode.omega_rad_s, frequency);
     }
     if let Some(converged) = converged {
         let (all, share) = (modes.len(), crate::scene::CONVERGED_FREQUENCY);
