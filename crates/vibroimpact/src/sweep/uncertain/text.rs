@@ -19,7 +19,7 @@ fn told(figure: Estimate) -> String {
             match (1.0 - order) as usize {
                 decimals @ ..16 => format!("{value:.decimals$} ± {error:.decimals$}"),
                 _ => {
-                    let decimals = (value.abs().log10().floor() - order + 1.0) as usize;
+                    let decimals = (value.abs().log10().floor() - order + 1.0).min(16.0) as usize;
                     format!("{value:.decimals$e} ± {error:.1e}")
                 }
             }
