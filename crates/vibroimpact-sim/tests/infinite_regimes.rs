@@ -21,7 +21,7 @@ fn separations(s: f64) -> usize {
 /// The numbers of separations: one contact below the critical S, the thesis's examples above it, and never an increase with S.
 #[test]
 fn numbers_of_separations() {
-    for (s, count) in [(15.0, 4), (1e3, 1), (1e5, 0), (4e5, 0), (1e8, 0), (1.6, 33)] {
+    for (s, count) in [(15.0, 4), (1e3, 1), (1e5, 0), (4e5, 0), (1e8, 0), (1e10, 0), (1.6, 33)] {
         assert_eq!(separations(s), count, "S = {s}");
     }
     for k in 0..=24 {
@@ -31,9 +31,9 @@ fn numbers_of_separations() {
         assert!(solution.rebound_ratio().unwrap() > 0.0);
     }
     let mut last = usize::MAX;
-    for k in 0..60 {
+    for k in 0..75 {
         let s = 1.7 * 10f64.powf(0.13 * f64::from(k));
-        let solution = solve(Structure::Beam, s.min(1e8), &once()).unwrap();
+        let solution = solve(Structure::Beam, s, &once()).unwrap();
         assert_eq!(solution.outcome, Outcome::Sustained, "S = {s}");
         assert!(solution.rebound_ratio().is_none() && solution.separations() <= last);
         last = solution.separations();
@@ -135,17 +135,19 @@ fn large_time_asymptotics() {
         let state = solve(Structure::Beam, s, &Settings { horizon: 2.0, ..once() }).unwrap().at(2.0).unwrap();
         (state.striker_velocity + attached(Structure::Beam, 2.0).speed).abs()
     };
-    assert!(distance(1e8) < 2e-3 && distance(1e8) < 0.2 * distance(1e5));
+    assert!(distance(1e8) < 2e-3 && distance(1e8) < 0.2 * distance(1e5) && distance(1e10) < 0.4 * distance(1e8));
 }
 
 /// A plate is a dashpot: there is one contact for any S, and the motion satisfies u' = -f, x' = u - f, here integrated by the
 /// classical Runge-Kutta method.
 #[test]
 fn plate_always_rebounds_once() {
-    for k in -6..=4 {
+    for k in -6..=5 {
         let s = 10f64.powi(2 * k);
         let solution = solve(Structure::Plate, s, &Settings::default()).unwrap();
         assert_eq!((solution.outcome, solution.separations()), (Outcome::Rebound, 1));
+        // the harder the contact, the sooner the plate carries the body along: the ratio falls as 1/S
+        assert!(s < 1e4 || (s * solution.rebound_ratio().unwrap() / 0.679293 - 1.0).abs() < 1e-3, "{s}: {solution:?}");
         if !(1e-4..=1e4).contains(&s) {
             continue;
         }
@@ -177,7 +179,7 @@ fn plate_always_rebounds_once() {
 fn sustained_contact_lasts() {
     let points = turning_points(6).unwrap();
     let near = points.iter().flat_map(|point| [point.s * (1.0 - 1e-6), point.s * (1.0 + 1e-6)]);
-    for s in near.chain([2.0, 15.0, 100.0, 1e3, 1e5, 1e8]) {
+    for s in near.chain([2.0, 15.0, 100.0, 1e3, 1e5, 1e8, 1e10]) {
         let first = solve(Structure::Beam, s, &once()).unwrap();
         let further = Settings { horizon: 20.0 * first.known_until, ..once() };
         let second = solve(Structure::Beam, s, &further).unwrap();
@@ -191,7 +193,7 @@ fn sustained_contact_lasts() {
 #[test]
 fn settings_do_not_change_the_outcome() {
     for structure in [Structure::Beam, Structure::Plate] {
-        for s in [1e-12, 1.5, 2.5, 300.0, 3e4, 1e8] {
+        for s in [1e-12, 1.5, 2.5, 300.0, 3e4, 1e8, 1e10] {
             let default = solve(structure, s, &once()).unwrap();
             for (nodes, tolerance) in [(8, 1e-3), (8, 1e-9), (13, 1e-8), (20, 1e-14), (32, 1e-3), (32, 1e-14)] {
                 let other = solve(structure, s, &Settings { nodes, tolerance, ..once() }).unwrap();
@@ -205,7 +207,7 @@ fn settings_do_not_change_the_outcome() {
 /// Input out of range is reported, not computed.
 #[test]
 fn bad_input_is_refused() {
-    for s in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-13, 1e9] {
+    for s in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-13, 1e11] {
         assert_eq!(solve(Structure::Beam, s, &once()).unwrap_err().field, "s");
     }
     for (settings, field) in [

@@ -329,7 +329,7 @@ fn a_result_is_printed_even_if_its_files_cannot_be_written() {
 #[test]
 fn errors_name_the_field_that_has_to_change() {
     let infinite = r#"{ "structure": { "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
-        "width_m": 0.028, "thickness_m": 0.028 }, "striker": { "density_kg_m3": 7800, "radius_m": 0.065, "speed_m_s": 0.5 },
+        "width_m": 0.028, "thickness_m": 0.028 }, "striker": { "density_kg_m3": 7800, "radius_m": 0.13, "speed_m_s": 0.5 },
         "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } }"#;
     let bodies = r#"{ "bodies": { "a": { "kind": "mass", "mass_kg": 1, "velocity_m_s": -1 } },
         "contacts": [{ "name": "c", "between": [{ "body": "a" }, "ground"], "law": "hertz", "stiffness_n_m1_5": 1e9 }],
@@ -371,9 +371,9 @@ fn errors_name_the_field_that_has_to_change() {
     for (arguments, part) in [
         (
             &["simulate", "infinite.json"][..],
-            "striker.radius_m = 0.065 is not allowed; it must be such that the number S",
+            "striker.radius_m = 0.13 is not allowed; it must be such that the number S",
         ),
-        (&["infinite-beam", "fast.json"], "striker.radius_m = 0.065"),
+        (&["infinite-beam", "fast.json"], "striker.radius_m = 0.13"),
         (
             &["simulate", "wide.json"],
             "structure.width_m = 1e+300 is not allowed; it must be such that the flexural rigidity",

@@ -6,7 +6,7 @@ use invalid_input::InvalidInput;
 pub(super) const NODES: std::ops::RangeInclusive<usize> = 8..=32;
 
 /// Smallest and largest `S` that [`solve`](super::solve()) accepts.
-pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e8;
+pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e10;
 
 /// The struck structure, which determines the kernel `K` of the Volterra equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -61,7 +61,7 @@ impl FirstContact {
     /// [`InvalidInput`] if `n` is not 2 to 16, `s` out of [`S_RANGE`], or no solution with `f >= 0` can
     /// be reached from smaller `S`.
     pub fn at_s(s: f64, n: usize) -> Result<FirstContact, InvalidInput> {
-        InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
+        InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e10")?;
         follow(Given::S, s.ln(), n, "s", s)
     }
 

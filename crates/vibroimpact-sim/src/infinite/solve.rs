@@ -75,7 +75,7 @@ impl Problem<'_> {
 
 /// The impact whose mass, speed and impulse response are 1, and whose Hertz stiffness is `sqrt(S)`.
 fn with_hertz<R>(structure: Structure, s: f64, then: impl FnOnce(&Problem<'_>) -> R) -> Result<R, InvalidInput> {
-    InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
+    InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e10")?;
     let power = match structure {
         Structure::Beam => 0.5,
         Structure::Plate => 0.0,

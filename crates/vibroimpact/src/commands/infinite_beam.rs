@@ -23,7 +23,7 @@ pub const EXAMPLES: &str = "Examples:
 
 With Hertz contact the impact depends only on S = C^10 k_H^2 m^8 v. S up to 1.5605 gives a rebound after one contact,
 larger S one or more separations and then sustained contact, and S above 35264 sustained contact at once. S from 1e-12
-to 1e8 can be solved. Within about 1e-6 of the critical S there are thousands of separations. The outcome may then be
+to 1e10 can be solved. Within about 1e-6 of the critical S there are thousands of separations. The outcome may then be
 \"stopped\", with the number of separations that are certain.
 A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and any contact.";
 
