@@ -18,6 +18,7 @@ use contact_models::{damping_ratio_if_it_pulled, reduced_mass_kg, stepped_restit
 use serde::Serialize;
 
 use crate::InvalidInput;
+use crate::scene::such_that;
 
 /// The requested restitution and what it refers to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -297,10 +298,8 @@ fn of_request(kind: Kind, wanted: &Wanted, fault: InvalidInput) -> InvalidInput 
         }
         _ => return fault,
     };
-    let InvalidInput { field: parameter, value: found, allowed, .. } = fault;
-    let found = found.map_or_else(String::new, |found| found.to_string());
-    let allowed = format!("such that {parameter} of the law {name}, now {found}, is {allowed}");
-    InvalidInput::new(field, value, allowed)
+    let parameter = format!("{} of the law {name}", fault.field);
+    InvalidInput::new(field, value, such_that(&parameter, fault))
 }
 
 /// A law with the requested restitution. A law that cannot have it is an error only if it was requested by name.

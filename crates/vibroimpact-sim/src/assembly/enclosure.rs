@@ -271,8 +271,11 @@ impl FlightBounds {
                     separation = 0.0;
                 }
             }
-            if above == 0.0 && curvature == 0.0 && separation >= 0.0 && rate > 0.0 && rate <= noise().1 {
-                return f64::INFINITY;
+            if above == 0.0 && curvature == 0.0 && separation >= 0.0 && rate > 0.0 {
+                let (_, rate_noise) = *rounding.get_or_insert_with(&noise);
+                if rate <= rate_noise {
+                    return f64::INFINITY;
+                }
             }
             // a parabola that is still above zero at the best time yet has its root beyond it
             let at_best = separation - best * (rate + 0.5 * curvature * best);

@@ -193,9 +193,9 @@ impl Loads {
         self.breaks.get(self.next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Number of times at which these loads change and others, of the same system, do not, or the reverse.
-    pub fn breaks_beside(&self, others: &Loads) -> usize {
-        self.breaks.len().abs_diff(others.breaks.len())
+    /// Number of breaks after the start.
+    pub fn break_count(&self) -> usize {
+        self.breaks.len()
     }
 
     /// Number of breaks that these loads have passed and others, of the same system, have not.

@@ -37,7 +37,7 @@ impl LoadChange {
 
     /// Whether breaks of the loads at hand coincide, or lie at the start, and do not at neighbouring values.
     pub fn splits(&self, loads: &Loads) -> bool {
-        self.neighbours.iter().any(|(_, near)| near.breaks_beside(loads) > 0)
+        self.neighbours.iter().any(|(_, near)| near.break_count() != loads.break_count())
     }
 
     /// The changes of motions of all modes, in the order of a system with the same modes.

@@ -7,7 +7,7 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("bodies", "an object with one object for each named body, which has the field kind"),
     ("contacts", "a list of contacts, each an object with name, between, gap_m, and a law with its parameters"),
     ("contacts[]", "an object with name, between, gap_m, and a law with its parameters"),
-    ("name", "a text without control characters that is the name of no other contact"),
+    ("name", CONTACT_NAME),
     ("between", BETWEEN),
     ("between[]", "an object with body and, unless that is a mass, location_m or location; or \"ground\""),
     ("two_sided", "true or false"),
@@ -40,6 +40,9 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("axial_rigidity_n", POSITIVE),
     ("area_m2", POSITIVE),
 ];
+
+/// The name of a contact.
+pub(crate) const CONTACT_NAME: &str = "a text without control characters that is the name of no other contact";
 
 /// The frequency of a harmonic load: its longest period is that of the longest run.
 pub(crate) const FREQUENCY: &str = "a number from 1e-12 to 1e30";

@@ -10,6 +10,7 @@ use vibroimpact_sim::assembly::{self, Assembly, Force, Settings};
 use super::AssemblyScene;
 use super::body::{Body, Elastic};
 use super::contact::{Contact, Point, Side};
+use super::fields::CONTACT_NAME;
 use super::load::require_finite;
 use super::seen::Seen;
 use crate::scene::fields::NOT_NEGATIVE;
@@ -62,8 +63,7 @@ impl AssemblyScene {
             let posed = bodies.contact(contact).map_err(|fault| beside(fault, ("contacts", i)))?;
             for (name, posed) in posed {
                 if name.is_empty() || !is_printable(&name) || names.contains(&name) {
-                    let allowed = "a text without control characters that is the name of no other contact";
-                    return Err(InvalidInput::new(("contacts", i, "name"), format!("{name:?}"), allowed));
+                    return Err(InvalidInput::new(("contacts", i, "name"), format!("{name:?}"), CONTACT_NAME));
                 }
                 names.push(name);
                 of_scene.push(i);

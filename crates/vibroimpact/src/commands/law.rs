@@ -21,7 +21,8 @@ bodies state the mass of the other body as --other-mass-kg.
 
 With a fixed step the first touch may lie anywhere within a step, so the restitution has a range. \"at the step\" is for
 semi-implicit Euler (MuJoCo and most engines). With the parameters \"for the step\" the mean of that range is the
-requested restitution. A contact that lasts more than 100,000 steps is not computed. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
+requested restitution. A contact that lasts more than 100,000 steps is not computed. In MuJoCo set solimp to two equal
+numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
 
 /// The requested restitution and what it refers to.
 #[derive(Args)]

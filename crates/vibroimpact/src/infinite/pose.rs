@@ -6,7 +6,7 @@ use vibroimpact_sim::infinite::{self, PlateSection, Receptance, Scale, Solution}
 use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
-use crate::scene::{Contact, Scene, Structure};
+use crate::scene::{Contact, Scene, Structure, such_that};
 
 /// An impact on an infinite structure in the terms of the solvers.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,8 +162,7 @@ impl Scene {
             (Some(mass_kg), _) => ("mass_kg", mass_kg),
             (None, radius_m) => ("radius_m", radius_m.unwrap_or(f64::NAN)),
         };
-        let found = fault.value.map_or_else(String::new, |found| found.to_string());
-        let allowed = format!("such that the {quantity} of the impact, now {found}, is {}; it {from}", fault.allowed);
-        InvalidInput::new(["striker", field], number(value), allowed)
+        let allowed = such_that(&format!("the {quantity} of the impact"), fault);
+        InvalidInput::new(["striker", field], number(value), format!("{allowed}; it {from}"))
     }
 }

@@ -18,7 +18,7 @@ use vibroimpact_sim::modal::{Mode, Solver};
 use crate::in_scene::in_scene;
 use crate::model::Kept;
 use crate::scene::require_positive;
-use crate::scene::{InvalidInput, Scene, as_json};
+use crate::scene::{InvalidInput, Scene, as_json, such_that};
 
 /// Number of modes in the law if neither the caller nor the scene states it (thesis 7.2).
 const LAW_MODES: usize = 50;
@@ -136,11 +136,7 @@ fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
     Impact::new(effective_kg, &Site::new(&vibrating(modes))?).map_err(|fault| match fault.field.first() {
-        Some("z") => {
-            let found = fault.value.map_or_else(String::new, |found| found.to_string());
-            let allowed = format!("such that Z = m sum phi_k^2, now {found}, is {}", fault.allowed);
-            InvalidInput::new("mass_kg", mass_kg, allowed)
-        }
+        Some("z") => InvalidInput::new("mass_kg", mass_kg, such_that("Z = m sum phi_k^2", fault)),
         _ => fault,
     })
 }

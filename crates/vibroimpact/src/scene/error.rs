@@ -28,6 +28,12 @@ pub(crate) fn require_product(quantity: &str, value: f64, fields: &[(&str, f64)]
     }
 }
 
+/// The values that a field is allowed to have so that this quantity, which follows from it and is out of range, is allowed too.
+pub(crate) fn such_that(quantity: &str, fault: InvalidInput) -> String {
+    let found = fault.value.map_or_else(String::new, |found| found.to_string());
+    format!("such that {quantity}, now {found}, is {}", fault.allowed)
+}
+
 /// An error that shows its number as in JSON.
 pub(crate) fn as_json(fault: InvalidInput) -> InvalidInput {
     match fault.value {
