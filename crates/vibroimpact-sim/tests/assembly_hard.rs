@@ -387,3 +387,23 @@ fn a_panel_after_a_very_short_one_begins_with_a_finite_guess() {
     let (run, _) = solve(&Assembly { bodies, contacts, loads }, 0.14679223057479138);
     assert!(run.counts.contact_steps < 10_000, "{:?}", run.counts);
 }
+
+/// A tip between a stop that it presses at the start and one that it only touches there: the order of the two does not matter.
+#[test]
+fn a_contact_that_only_touches_may_be_listed_before_one_that_presses() {
+    let tip = [1.3, -0.5];
+    let mode = |omega_rad_s| BodyMode { omega_rad_s, damping_ratio: 0.02 };
+    let bodies = vec![Body::at_rest(vec![mode(0.0), mode(3000.0)]), Body::mass(0.2, 0.0, 0.0)];
+    let presses = Contact { sides: [on(0, &tip), Point::Ground], gap_m: -1e-5, law: Hertz::new(1e7).unwrap().into() };
+    let touches = Contact {
+        sides: [on(1, &[0.2f64.sqrt().recip()]), on(0, &tip)],
+        gap_m: 0.0,
+        law: Hertz::new(5e6).unwrap().into(),
+    };
+    let by_order = [vec![presses.clone(), touches.clone()], vec![touches, presses]].map(|contacts| {
+        let (found, _) = solve(&Assembly { bodies: bodies.clone(), contacts, loads: Vec::new() }, 0.05);
+        found.rate
+    });
+    assert_eq!(by_order[0], by_order[1]);
+    assert!(by_order[0][1][0] > 0.0);
+}

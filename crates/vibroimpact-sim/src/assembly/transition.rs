@@ -36,9 +36,14 @@ impl<'a> March<'a> {
             self.states[c].inverse_mass = self.system.inverse_mass(c);
             self.states[c].momentum = self.momentum_of_loads(c);
         }
-        // the fastest contact first, since its speed is the scale for contacts that touch without speed
+        // compressed contacts first, and the fastest first of these and of the others, since their speed is the scale for contacts
+        // that touch without speed
+        let is_pressed: Vec<bool> = (0..self.states.len()).map(|c| self.states[c].overlap > self.noise(c)).collect();
         let mut order: Vec<usize> = (0..self.states.len()).collect();
-        order.sort_by(|&one, &other| self.states[other].rate.total_cmp(&self.states[one].rate));
+        order.sort_by(|&one, &other| {
+            let rates = self.states[other].rate.total_cmp(&self.states[one].rate);
+            is_pressed[other].cmp(&is_pressed[one]).then(rates)
+        });
         for c in order {
             let noise = self.noise(c);
             if self.states[c].overlap > noise {
