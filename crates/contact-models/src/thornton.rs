@@ -115,9 +115,16 @@ impl Thornton {
 
     /// The elastic line through the point of the loading line at `xi_max`; up to first yield, Hertz.
     fn elastic(&self, xi_max: f64) -> Branch {
-        let xi_y = self.yield_compression_m();
-        let anchor_m = if xi_max > xi_y { (xi_max - self.recovery(xi_max)).max(0.0) } else { 0.0 };
-        Branch { stage: Stage::Single, anchor_m, internal: [xi_max.max(xi_y)].into() }
+        let has_yielded = xi_max > self.yield_compression_m();
+        let anchor_m = if has_yielded { (xi_max - self.recovery(xi_max)).max(0.0) } else { 0.0 };
+        let internal = if has_yielded { [xi_max].into() } else { Internal::NONE };
+        Branch { stage: Stage::Single, anchor_m, internal }
+    }
+
+    /// The compression at which an elastic branch yields.
+    fn yields_at_m(&self, branch: &Branch) -> f64 {
+        let [xi_max] = branch.internal.into();
+        xi_max.max(self.yield_compression_m())
     }
 
     /// Rebound speed over approach speed of a rigid striker at a wall.
@@ -137,7 +144,8 @@ impl Thornton {
 
 impl ContactLaw for Thornton {
     /// On an elastic branch (`Single`) the anchor is the indentation `xi_p` and the internal variable is the largest
-    /// compression so far, at least `xi_y`. The memory consists of the same two numbers.
+    /// compression so far, or 0 before first yield: `xi_y` belongs to the law, and changes with its parameters. The memory consists of
+    /// the same two numbers.
     fn touch(&self, memory: &Memory, _approach_speed_m_s: f64) -> Branch {
         let [xi_max] = memory.internal.into();
         self.elastic(bounded(xi_max))
@@ -149,7 +157,7 @@ impl ContactLaw for Thornton {
             let per_compression_n_m = self.plastic_slope();
             return Force { force_n: self.loading_force(xi), per_compression_n_m, per_rate_n_s_m: 0.0 };
         }
-        let [xi_max] = branch.internal.into();
+        let xi_max = self.yields_at_m(branch);
         let delta = xi_max - branch.anchor_m;
         let share = (xi - branch.anchor_m).max(0.0) / delta;
         let force = self.loading_force(xi_max) * share.sqrt();
@@ -166,11 +174,10 @@ impl ContactLaw for Thornton {
     }
 
     fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
-        let [xi_max] = branch.internal.into();
         match (branch.stage, which) {
             (Stage::Loading, 0) => Some(Boundary::rate_falls_to(0.0)),
             (Stage::Single, 0) => Some(Boundary::compression_falls_to(branch.anchor_m)),
-            (Stage::Single, 1) => Some(Boundary::compression_rises_to(xi_max)),
+            (Stage::Single, 1) => Some(Boundary::compression_rises_to(self.yields_at_m(branch))),
             _ => None,
         }
     }

@@ -1,6 +1,6 @@
 //! Derivatives of runs of assemblies compared with differences of runs at a tolerance of 1e-13.
 
-use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring};
+use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Derivative, Derivatives, Differentiated, Force, Interval, Load, NoDerivative,
     Observer, Outcome, Parameter, Point, Run, Settings, Solver, run,
@@ -306,6 +306,29 @@ fn bad_parameters_are_named() {
     assert_eq!(field([1.0, 1.0, 2.0, 3.0], &assembly, 1.0), "parameters[0].offsets");
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &assembly, f64::NAN), "parameters[0].end_s");
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other, 1.0), "parameters[0].neighbours[0]");
+}
+
+/// A ball that falls on a floor of Thornton's material, `[modulus, radius, yield pressure, height]`: beyond yield at first, and once
+/// more below it.
+#[test]
+fn an_elastoplastic_contact_changes_with_its_material() {
+    for (height, yields) in [(1e-2, true), (1e-5, false)] {
+        let pose = |n: &[f64]| {
+            let [modulus, radius, pressure, height] = n.try_into().unwrap();
+            let law = Thornton::new(modulus, radius, pressure).unwrap();
+            let floor = Contact { sides: [of_mass(0, 0.1), Point::Ground], gap_m: 0.0, law: law.into() };
+            let weight = Load { body: 0, shape: vec![0.1f64.sqrt()], force: Force::Constant { force_n: -9.81 } };
+            let bodies = vec![Body::mass(0.1, height, 0.0)];
+            (Assembly { bodies, contacts: vec![floor], loads: vec![weight] }, 10.0 * (height / 9.81).sqrt())
+        };
+        let case = Case { pose, numbers: vec![1e11, 0.02, 1e9, height] };
+        let found = case.differentiate(1e-10);
+        let yield_m = Thornton::new(1e11, 0.02, 1e9).unwrap().yield_compression_m();
+        assert_eq!(found.intervals[0][0].peak_compression_m > yield_m, yields);
+        assert!(found.intervals[0].len() > 2, "{}", found.intervals[0].len());
+        let (compared, covered) = case.check(1e-6);
+        assert!(covered >= compared - 2, "{covered} of {compared}");
+    }
 }
 
 /// A row of balls that touch at rest, struck by another: `[mass of the second ball, speed, stiffness]`.
