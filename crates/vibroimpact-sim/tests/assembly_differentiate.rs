@@ -1,14 +1,16 @@
 //! Derivatives of runs of assemblies compared with differences of runs at a tolerance of 1e-13.
 
-use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton};
+use contact_models::{Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Derivative, Derivatives, Differentiated, Force, Interval, Load, NoDerivative,
     Observer, Outcome, Parameter, Point, Run, Settings, Solver, run,
 };
 
 /// An assembly and the end of its run as functions of some numbers.
+type Pose = fn(&[f64]) -> (Assembly<Law>, f64);
+
 struct Case {
-    pose: fn(&[f64]) -> (Assembly<Law>, f64),
+    pose: Pose,
     numbers: Vec<f64>,
 }
 
@@ -308,6 +310,28 @@ fn bad_parameters_are_named() {
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other, 1.0), "parameters[0].neighbours[0]");
 }
 
+/// A ball that falls on two points of the floor at once, `[gap, gap, height, restitution]`: each has its own speed of approach, which
+/// the law remembers.
+#[test]
+fn contacts_that_touch_together_have_their_own_speeds() {
+    let pose = |n: &[f64]| {
+        let [one, other, height, restitution] = n.try_into().unwrap();
+        let law = Flores::new(1e8, restitution).unwrap().into();
+        let floor = |gap_m| Contact { sides: [of_mass(0, 0.1), Point::Ground], gap_m, law };
+        let weight = Load { body: 0, shape: vec![0.1f64.sqrt()], force: Force::Constant { force_n: -9.81 } };
+        let bodies = vec![Body::mass(0.1, height, -0.1)];
+        (Assembly { bodies, contacts: vec![floor(one), floor(other)], loads: vec![weight] }, 0.08)
+    };
+    let case = Case { pose, numbers: vec![1e-4, 1e-4, 1e-3, 0.7] };
+    // forces that begin smoothly one after the other cost some digits
+    let (compared, covered) = case.check(1e-4);
+    assert!(compared > 4 * 14 && covered >= compared - 2, "{covered} of {compared}");
+    let derivatives = all(&case.differentiate(1e-10).derivatives);
+    let by_gap = [0, 1].map(|c| derivatives[1].contacts[c].intervals[0].approach_speed_m_s.value);
+    let speed = (0.1f64 * 0.1 + 2.0 * 9.81 * 1.1e-3).sqrt();
+    assert!(by_gap[0].abs() < 1e-6 && (by_gap[1] - 9.81 / speed).abs() < 1e-4, "{by_gap:?}");
+}
+
 /// A ball that falls on a floor of Thornton's material, `[modulus, radius, yield pressure, height]`: beyond yield at first, and once
 /// more below it.
 #[test]
@@ -328,6 +352,54 @@ fn an_elastoplastic_contact_changes_with_its_material() {
         assert!(found.intervals[0].len() > 2, "{}", found.intervals[0].len());
         let (compared, covered) = case.check(1e-6);
         assert!(covered >= compared - 2, "{covered} of {compared}");
+    }
+}
+
+/// Surfaces that overlap at the start and separate, `[speed, gap]`: the law passes branches that the compression determines.
+#[test]
+fn a_compressed_start_determines_the_branch() {
+    fn posed(law: Law, n: &[f64]) -> (Assembly<Law>, f64) {
+        let wall = Contact { sides: [of_mass(0, 0.1), Point::Ground], gap_m: n[1], law };
+        (Assembly { bodies: vec![Body::mass(0.1, 0.0, n[0])], contacts: vec![wall], loads: Vec::new() }, 1e-3)
+    }
+    let elastoplastic: Pose = |n| posed(Thornton::new(1e11, 0.02, 1e9).unwrap().into(), n);
+    let hysteretic: Pose = |n| {
+        let law = Hysteretic { stiffness_n_m1_5: 1e9, theta_m: 0.5, beta: 0.4, k_bar: 2.0, epsilon_m: 0.0 };
+        posed(law.into(), n)
+    };
+    for pose in [elastoplastic, hysteretic] {
+        let (compared, covered) = Case { pose, numbers: vec![0.1, -2e-5] }.check(1e-6);
+        assert!(compared > 10 && covered == compared, "{covered} of {compared}");
+    }
+}
+
+/// A mass on a spring that rests against a stop until a ball strikes it, under a harmonic load on the ball: `[force, frequency,
+/// stiffness, damping]`. The stop is touched from the start on, whatever they are.
+#[test]
+fn surfaces_that_rest_against_each_other_under_loads_touch_at_the_start() {
+    let pose = |n: &[f64]| {
+        let [force_n, omega_rad_s, spring, damping_ratio] = n.try_into().unwrap();
+        let held = Body::at_rest(modes(&[spring, 3.0 * spring], damping_ratio));
+        let at = [2.0, -1.5];
+        let law = Hertz::new(1e9).unwrap().into();
+        let contacts = vec![
+            Contact { sides: [point(0, &at), Point::Ground], gap_m: 0.0, law },
+            Contact { sides: [of_mass(1, 0.1), point(0, &at)], gap_m: 1e-5, law },
+        ];
+        let force = Force::Harmonic { force_n, omega_rad_s, phase_rad: 0.3 };
+        let loads = vec![
+            Load { body: 0, shape: vec![2.0, -1.5], force: force.clone() },
+            Load { body: 1, shape: vec![0.1f64.sqrt().recip()], force },
+        ];
+        (Assembly { bodies: vec![held, Body::mass(0.1, 0.0, -0.5)], contacts, loads }, 3e-3)
+    };
+    let case = Case { pose, numbers: vec![-3.0, 150.0, 400.0, 0.02] };
+    let found = case.differentiate(1e-10);
+    assert_eq!(found.intervals[0][0].start_s, 0.0);
+    for derivatives in all(&found.derivatives) {
+        let first = &derivatives.contacts[0].intervals[0];
+        assert_eq!(first.start_s.value, 0.0);
+        assert!(first.approach_speed_m_s.value.abs() < 1e-10, "{:?}", first.approach_speed_m_s);
     }
 }
 

@@ -223,11 +223,7 @@ impl<'a> March<'a> {
 
     /// Rounding of a sum over the modes of a contact and another term.
     fn rounding(&self, c: usize, values: &[f64], beside: f64) -> f64 {
-        let of = |Span { modes, psi }: &Span| {
-            let [sum] = sum_over([psi, &values[modes.clone()]], |[psi, value]| [(psi * value).abs()]);
-            sum
-        };
-        4.0 * f64::EPSILON * (self.system.links[c].spans.iter().map(of).sum::<f64>() + beside)
+        4.0 * f64::EPSILON * (self.system.links[c].size(values) + beside)
     }
 
     /// Rounding of an overlap as it is summed up over a panel of `h` (m).

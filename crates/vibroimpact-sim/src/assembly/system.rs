@@ -18,6 +18,12 @@ impl Span {
         let [sum] = sum_over([&self.psi, &values[self.modes.clone()]], |[psi, value]| [psi * value]);
         sum
     }
+
+    /// `sum |psi_k values_k|`, to which the rounding of the sum is relative.
+    pub fn size(&self, values: &[f64]) -> f64 {
+        let [size] = sum_over([&self.psi, &values[self.modes.clone()]], |[psi, value]| [(psi * value).abs()]);
+        size
+    }
 }
 
 /// One contact, `xi = u_B - u_A - gap`, over the modes of the one or two bodies that it joins.
@@ -41,6 +47,11 @@ impl Link {
     /// `sum psi_k values_k` over all modes.
     pub fn sum(&self, values: &[f64]) -> f64 {
         self.spans.iter().map(|span| span.sum(values)).sum()
+    }
+
+    /// `sum |psi_k values_k|` over all modes.
+    pub fn size(&self, values: &[f64]) -> f64 {
+        self.spans.iter().map(|span| span.size(values)).sum()
     }
 
     /// Its weights over the modes of this body.

@@ -12,6 +12,10 @@ use std::array;
 /// Two simultaneous events stay together if their times shift equally within this relative difference.
 const TOGETHER: f64 = 1e-6;
 
+/// Largest change of a distance, relative to the sum of its parts, that counts as none: these are slopes through neighbouring
+/// values.
+const UNCHANGED: f64 = 1e-9;
+
 /// Shift of the zero of an event function with this rate, for a change of the function.
 fn later(changes: f64, slope: f64) -> Option<f64> {
     if changes == 0.0 {
@@ -26,7 +30,21 @@ impl Walk<'_> {
     pub fn speed(&self, c: usize, time_s: f64, slide: &Moved) -> [f64; 2] {
         let link = &self.system.links[c];
         let (_, by_loads) = self.loads.overlap(c, time_s);
-        [link.sum(&slide.amplitude) + by_loads, link.sum(&slide.rate) + self.loads.bend(c, time_s)]
+        [self.rate(c, &slide.amplitude, by_loads), link.sum(&slide.rate) + self.loads.bend(c, time_s)]
+    }
+
+    /// Rate of an overlap from those of the modes and of their steady motion, zero within rounding.
+    pub fn rate(&self, c: usize, modes: &[f64], by_loads: f64) -> f64 {
+        let link = &self.system.links[c];
+        let rate = link.sum(modes) + by_loads;
+        if rate.abs() <= 4.0 * f64::EPSILON * (link.size(modes) + by_loads.abs()) { 0.0 } else { rate }
+    }
+
+    /// Sum of the sizes of the parts of the change of an overlap.
+    fn parts(&self, d: usize, c: usize, time_s: f64, amplitude: &[f64], change: &[f64]) -> f64 {
+        let by_loads = self.load_changes[d].as_ref().map_or(0.0, |loads| loads.overlap(c, time_s)[0]);
+        let by_shapes: f64 = self.changes[d].psi[c].iter().map(|span| span.size(amplitude)).sum();
+        self.tangents[d].contacts[c].reference.abs() + self.system.links[c].size(change) + by_loads.abs() + by_shapes
     }
 
     /// Shift of an event at the end of a panel of unchanged length, and the rate of its function.
@@ -34,11 +52,17 @@ impl Walk<'_> {
         &self,
         d: usize,
         (contact, event): (usize, Event),
-        time_s: f64,
+        (time_s, state): (f64, [&[f64]; 2]),
         overlap: [f64; 2],
-        change: [f64; 2],
+        moved: [&[f64]; 2],
         speed: [f64; 2],
     ) -> Result<(f64, f64), NoDerivative> {
+        let change = self.overlap(d, contact, time_s, state, moved);
+        // bodies that rest against each other from the start do so after any change that leaves their distance as it is
+        if time_s == 0.0 && speed[0] == 0.0 && matches!(event, Event::Touch { .. }) {
+            let stays = change[0].abs() <= UNCHANGED * self.parts(d, contact, time_s, state[0], moved[0]);
+            return if stays { Ok((0.0, 0.0)) } else { Err(NoDerivative::Graze { contact, time_s }) };
+        }
         let found = self.event_function(d, contact, event, overlap, change, speed);
         let (changes, slope) = found.ok_or(NoDerivative::Fork { contact, time_s })?;
         Ok((later(changes, slope).ok_or(NoDerivative::Graze { contact, time_s })?, slope))
@@ -52,9 +76,8 @@ impl Walk<'_> {
         event: Event,
         (time_s, state): (f64, [&[f64]; 2]),
         overlap: [f64; 2],
-        slide: &Moved,
+        speed: [f64; 2],
     ) -> Vec<f64> {
-        let speed = self.speed(c, time_s, slide);
         let jumps = match event {
             Event::Touch { .. } => {
                 let law = self.posed.laws[c];
@@ -64,8 +87,8 @@ impl Walk<'_> {
             Event::Cross(_) => false,
         };
         let of = |(d, tangent): (usize, &Tangent)| {
-            let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
-            let (later, slope) = self.shift(d, (c, event), time_s, overlap, change, speed)?;
+            let moved = [tangent.amplitude.as_slice(), &tangent.rate];
+            let (later, slope) = self.shift(d, (c, event), (time_s, state), overlap, moved, speed)?;
             // the parts that cancel if both events shift by the same time
             let parts =
                 sum(&self.changes[d].psi[c], state[0]).abs() + self.system.links[c].sum(&tangent.amplitude).abs();
@@ -115,13 +138,14 @@ impl Walk<'_> {
         Some((changes, along(speed)))
     }
 
-    /// Derivatives of the law's transition.
+    /// Derivatives of the law's transition, at an event that shifts by so much more than the first one at this time, with the rate of the
+    /// overlap and the rate of that.
     pub fn transition(
         &mut self,
         (c, event): (usize, Event),
         (at_s, state): (f64, [&[f64]; 2]),
         [overlap, rate]: [f64; 2],
-        apart: &[f64],
+        (apart, speed): (&[f64], [f64; 2]),
     ) {
         let law = self.posed.laws[c];
         let followed = self.contacts[c];
@@ -187,7 +211,8 @@ impl Walk<'_> {
         for d in 0..self.changes.len() {
             let tangent = &self.tangents[d];
             let carried = tangent.contacts[c];
-            let [by_overlap, by_rate] = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
+            let at_first = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
+            let [by_overlap, by_rate] = array::from_fn(|i| at_first[i] + apart[d] * speed[i]);
             let changes: Given = match event {
                 Event::Cross(_) => join(carried.branch, [by_overlap, by_rate]),
                 Event::Touch { .. } => join(carried.memory, [by_rate, 0.0]),
@@ -237,6 +262,8 @@ impl Walk<'_> {
             self.begun += 1;
             followed.peaks = [0.0; 2];
             followed.overlap = if overlaps { overlap } else { followed.memory.touch_m };
+            // a law may pass several branches at once where surfaces overlap at the start
+            followed.sizes[0] = followed.sizes[0].max(followed.overlap.abs());
         }
         match after {
             After::Continue(branch) => self.contacts[c].branch = Some(branch),

@@ -229,7 +229,7 @@ impl Walk<'_> {
                     Some(_) => followed.overlap,
                     None => next.contacts[c].reference + link.sum(state[0]) + shift,
                 };
-                [overlap, link.sum(state[1]) + shift_rate]
+                [overlap, self.rate(c, state[1], shift_rate)]
             })
             .collect();
         for (followed, [_, rate]) in self.contacts.iter_mut().zip(&overlaps) {
@@ -243,9 +243,8 @@ impl Walk<'_> {
                 longer = match ending {
                     Ending::Length => 0.0,
                     Ending::Event(c, event) => {
-                        let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate]);
-                        let speed = self.speed(c, time_s, slide);
-                        let shift = self.shift(d, (c, event), time_s, overlaps[c], change, speed);
+                        let (speed, moved) = (self.speed(c, time_s, slide), [moved.amplitude.as_slice(), &moved.rate]);
+                        let shift = self.shift(d, (c, event), (time_s, state), overlaps[c], moved, speed);
                         self.or_refuse(d, shift).0
                     }
                     Ending::Break => {
@@ -285,11 +284,14 @@ impl Walk<'_> {
             tangent.time_s += longer;
         }
         for (i, (c, event)) in next.events.iter().enumerate() {
+            let speed = slide.map_or([0.0; 2], |slide| self.speed(*c, time_s, slide));
+            // branches that surfaces pass because they overlap at the start are not located
+            let is_located = time_s > 0.0 || matches!(event, Event::Touch { overlaps: false });
             let apart = match slide {
-                Some(slide) if i > 0 => self.apart(*c, *event, (time_s, state), overlaps[*c], slide),
+                Some(_) if i > 0 && is_located => self.apart(*c, *event, (time_s, state), overlaps[*c], speed),
                 _ => vec![0.0; self.changes.len()],
             };
-            self.transition((*c, *event), (time_s, state), overlaps[*c], &apart);
+            self.transition((*c, *event), (time_s, state), overlaps[*c], (&apart, speed));
         }
         for (followed, seen) in self.contacts.iter_mut().zip(&next.contacts) {
             followed.branch = seen.branch;
