@@ -180,6 +180,19 @@ fn statistics_begin_exactly_within_an_interval() {
 }
 
 /// A run that comes to rest before the statistics begin goes on until they do.
+/// Until the ball turns, a wall receives all of its energy, wherever within a panel that is.
+#[test]
+fn the_work_of_compression_is_the_energy_of_the_ball() {
+    for speed in [0.1, 0.17, 0.31, 0.5, 0.83, 1.4, 2.2] {
+        let wall = Contact { sides: [mass(0, 0.1), Point::Ground], gap_m: 0.0, law: Hertz::new(1e9).unwrap().into() };
+        let ball = Body::mass(0.1, 0.0, -speed);
+        let assembly = Assembly { bodies: vec![ball], contacts: vec![wall], loads: Vec::new() };
+        let (found, _) = solve(&assembly, 0.01, 1e-9);
+        let share = found.contacts[0].statistics.compression_work_j / (0.05 * speed * speed);
+        assert!((share - 1.0).abs() < 1e-7, "{speed}: {share}");
+    }
+}
+
 #[test]
 fn statistics_of_a_body_at_rest_are_those_of_its_weight() {
     let law = Law::from(KelvinVoigt::new(1e5, 50.0).unwrap());
