@@ -20,7 +20,7 @@ use crate::panel::lanes::{ComplexLanes, Lanes};
 use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
-use crate::panel::vector::LANES;
+use crate::panel::vector::{LANES, sum_over};
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
@@ -83,69 +83,76 @@ impl Form {
     }
 }
 
+/// The rates of a mode: to a unit rate, and to unit Legendre forces.
+const RATES: usize = 1 + Q;
+
 /// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
 struct Series<const M: usize> {
     weights: [f64; M],
-    /// `x^p/p!`.
-    powers: Vec<[f64; M]>,
-    /// `[p][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
-    forced: Vec<[[f64; M]; Q]>,
+    /// `[i][p]`: `x^p/p!`, then `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
+    powers: [Vec<[f64; M]>; RATES],
 }
 
 impl<const M: usize> Series<M> {
     fn new() -> Series<M> {
         let rule = rule(const { NonZeroUsize::new(M).unwrap() });
-        let mut powers = vec![[1.0; M]; SERIES];
-        let mut forced = vec![[[0.0; M]; Q]; SERIES];
+        let mut powers: [_; RATES] = array::from_fn(|_| vec![[0.0; M]; SERIES]);
         for (q, &(x, _)) in rule.iter().enumerate() {
-            for p in 1..SERIES {
-                powers[p][q] = powers[p - 1][q] * x / p as f64;
+            let [by_rate, by_force @ ..] = &mut powers;
+            let mut power = 1.0;
+            for (p, at) in by_rate.iter_mut().enumerate() {
+                at[q] = power;
+                power *= x / (p + 1) as f64;
             }
             for &(y, w) in &BASIS.fine {
-                let values = legendre(x * y);
                 let mut kernel = w * x;
-                for (p, row) in forced.iter_mut().enumerate() {
-                    if p > 0 {
-                        kernel *= x * (1.0 - y) / p as f64;
+                for p in 0..SERIES {
+                    for (row, value) in by_force.iter_mut().zip(legendre(x * y)) {
+                        row[p][q] += kernel * value;
                     }
-                    for n in 0..Q {
-                        row[n][q] += kernel * values[n];
-                    }
+                    kernel *= x * (1.0 - y) / (p + 1) as f64;
                 }
             }
         }
-        Series { weights: array::from_fn(|q| rule[q].1), powers, forced }
-    }
-
-    /// `S'^(p)(0) h^p`.
-    fn derivatives(mode: &BodyMode, h: f64) -> impl Iterator<Item = f64> {
-        let angle = mode.omega_rad_s * h;
-        let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
-        let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
-        let (mut here, mut next) = (1.0, -drag);
-        (0..terms).map(move |_| {
-            let value = here;
-            (here, next) = (next, -drag * next - square * here);
-            value
-        })
+        Series { weights: array::from_fn(|q| rule[q].1), powers }
     }
 
     #[inline(always)]
     fn form(&self, mode: &BodyMode, h: f64) -> Form {
-        let (mut by_rate, mut by_force) = ([0.0; M], [[0.0; M]; Q]);
-        for (derivative, (powers, forced)) in Self::derivatives(mode, h).zip(self.powers.iter().zip(&self.forced)) {
-            for q in 0..M {
-                by_rate[q] += derivative * powers[q];
-            }
-            for n in 0..Q {
+        // S'^(p)(0) h^p
+        let angle = mode.omega_rad_s * h;
+        let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
+        let mut derivatives = [0.0; SERIES];
+        let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
+        let (mut here, mut next) = (1.0, -drag);
+        for derivative in &mut derivatives[..terms] {
+            *derivative = here;
+            (here, next) = (next, -drag * next - square * here);
+        }
+
+        let mut rates = [[0.0; M]; RATES];
+        for (values, powers) in rates.iter_mut().zip(&self.powers) {
+            for (derivative, power) in derivatives[..terms].iter().zip(powers) {
                 for q in 0..M {
-                    by_force[n][q] += derivative * forced[n][q];
+                    values[q] += derivative * power[q];
                 }
             }
         }
-        let mut form = Form::NONE;
-        for q in 0..M {
-            form.add(self.weights[q], by_rate[q], &by_force.map(|values| values[q]));
+        let mut means = [[0.0; RATES]; RATES];
+        for n in 0..RATES {
+            let weighted: [f64; M] = array::from_fn(|q| self.weights[q] * rates[n][q]);
+            for m in 0..=n {
+                [means[n][m]] = sum_over(
+                    [&weighted, &rates[m]],
+                    #[inline(always)]
+                    |[one, other]| [one * other],
+                );
+            }
+        }
+        let mut form = Form { bb: means[0][0], ..Form::NONE };
+        for n in 0..Q {
+            form.bq[n] = means[n + 1][0];
+            form.qq[n].copy_from_slice(&means[n + 1][1..]);
         }
         form.scaled(mode, h)
     }
