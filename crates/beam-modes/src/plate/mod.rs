@@ -72,8 +72,8 @@ impl Plate {
     /// one). Otherwise Ritz's method is used with up to some 54 polynomials in each direction, which do not resolve the local
     /// deflection under the load. This error depends on the neighbourhood of the load only, and is therefore taken from a plate
     /// for which it is known: one that is pinned along two opposite edges, with the free edge that is nearest (Levy's series),
-    /// or along all edges. The remaining error is extrapolated in the degree, to some 1e-7, and to 1e-4 very near to corners
-    /// with clamped edges.
+    /// or along all edges. The remaining error is extrapolated in the degree, to some 1e-7, and to 1e-2 very near to clamped
+    /// edges, where the deflection is tiny; [`Plate::static_compliance_with_uncertainty`] states it.
     ///
     /// # Errors
     /// As [`Plate::checked`]; a location outside the plate; Mindlin's theory, which gives no finite deflection.
