@@ -78,7 +78,7 @@ impl State {
     /// Scales of compression and speed of the contact: the largest so far, within the range of the laws.
     pub fn scales(&self) -> Option<(f64, f64)> {
         let touch = self.touch()?;
-        let compression = touch.peak_compression.value().max(self.overlap);
+        let compression = touch.peak_compression.at_nodes().max(self.overlap);
         let speed = touch.interval.approach_speed_m_s.max(self.rate.abs());
         let within = |value: f64| (1e-30..=1e10).contains(&value);
         // for a contact that has just begun, the distance covered at its speed in a microsecond
@@ -174,12 +174,13 @@ impl State {
 /// Work of compression on a panel of unit length: the integral of force times rate over the parts on which the rate is positive.
 fn compression_work(solved: &Collocated, force: &Legendre, rate: &Nodal) -> f64 {
     let rates = Legendre::through(rate);
-    let ends = [0.0, 1.0].map(|place| rates.at(place));
-    let all = || rate.iter().chain(&ends);
-    if all().all(|rate| *rate >= 0.0) {
+    let ends = rates.at_ends();
+    let least = rate.iter().fold(ends[0].min(ends[1]), |least, rate| rate.min(least));
+    let most = rate.iter().fold(ends[0].max(ends[1]), |most, rate| rate.max(most));
+    if least >= 0.0 {
         return dot(&BASIS.weights, &std::array::from_fn(|i| solved.force[i] * rate[i]));
     }
-    if all().all(|rate| *rate <= 0.0) {
+    if most <= 0.0 {
         return 0.0;
     }
     let quotient = solved.quotient(force);

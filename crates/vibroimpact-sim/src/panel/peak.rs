@@ -3,35 +3,57 @@
 use super::ends::Ends;
 use super::legendre::{Nodal, Q};
 
-/// The largest value of a quantity over the steps of a contact. The step with the largest value is stored, and what its nodal
-/// values represent is searched when the contact has ended.
+/// The largest value of a quantity over the steps of a contact. It lies in the step with the largest nodal value or in one beside
+/// it: a maximum beside the end of a long step can lie above its nodes by more than above those of the short step that adjoins it.
+/// What the nodal values of these steps represent is searched when the contact has ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peak {
+    highest: Step,
+    before: Step,
+    after: Option<Step>,
+    last: Step,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Step {
     largest: f64,
     nodal: Nodal,
     ends: Ends,
 }
 
-/// Steps whose nodal values differ by more than this ratio are compared by these alone. A maximum beside the end of a long step can
-/// lie above its nodes by more than above those of the short step that adjoins it.
+/// A step beside the highest one is searched if its largest nodal value is at least this part of the other.
 const CLOSE: f64 = 0.8;
 
+impl Step {
+    const NONE: Step = Step { largest: 0.0, nodal: [0.0; Q], ends: Ends::SMOOTH };
+
+    fn maximum(&self) -> f64 {
+        self.largest.max(self.ends.maximum(&self.ends.quotient(&self.nodal)).1)
+    }
+}
+
 impl Peak {
-    pub const NONE: Peak = Peak { largest: 0.0, nodal: [0.0; Q], ends: Ends::SMOOTH };
+    pub const NONE: Peak = Peak { highest: Step::NONE, before: Step::NONE, after: None, last: Step::NONE };
 
     pub fn note(&mut self, nodal: &Nodal, ends: Ends) {
-        let largest = nodal.iter().fold(0.0, |a: f64, b| a.max(*b));
-        if largest <= CLOSE * self.largest {
-            return;
+        let step = Step { largest: nodal.iter().fold(0.0, |a: f64, b| a.max(*b)), nodal: *nodal, ends };
+        if step.largest > self.highest.largest {
+            (self.before, self.highest, self.after) = (self.last, step, None);
+        } else if self.after.is_none() {
+            self.after = Some(step);
         }
-        let found = Peak { largest, nodal: *nodal, ends };
-        if CLOSE * largest > self.largest || found.value() > self.value() {
-            *self = found;
-        }
+        self.last = step;
+    }
+
+    /// The largest nodal value.
+    pub fn at_nodes(&self) -> f64 {
+        self.highest.largest
     }
 
     pub fn value(&self) -> f64 {
-        self.largest.max(self.ends.maximum(&self.ends.quotient(&self.nodal)).1)
+        let least = CLOSE * self.highest.largest;
+        let beside = [Some(self.before), self.after].into_iter().flatten().filter(|step| step.largest >= least);
+        beside.map(|step| step.maximum()).fold(self.highest.maximum(), f64::max)
     }
 }
 

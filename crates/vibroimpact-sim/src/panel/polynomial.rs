@@ -52,6 +52,16 @@ impl Legendre {
         dot(&self.0, &legendre(s))
     }
 
+    /// Its values at 0 and at 1.
+    pub fn at_ends(&self) -> [f64; 2] {
+        let (mut even, mut odd) = (0.0, 0.0);
+        for pair in self.0.chunks_exact(2) {
+            even += pair[0];
+            odd += pair[1];
+        }
+        [even - odd, even + odd]
+    }
+
     /// Its values at as many places as there are nodes.
     pub fn at_each(&self, places: &[f64; Q]) -> [f64; Q] {
         let Legendre(coefficients) = self;
