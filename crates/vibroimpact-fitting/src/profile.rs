@@ -21,13 +21,15 @@ use nalgebra::{DMatrix, DVector};
 /// Largest number of searches for an end.
 const MOST_SEARCHES: usize = 40;
 /// An end beyond this change of a transformed coordinate, a factor of 3000, counts as open: models far out cost much and have
-/// little meaning. The same holds for this many first steps of a coordinate that is not transformed.
+/// little meaning. Towards the search interval of a parameter that is outside it, the change counts from there. The same holds
+/// for this many first steps of a coordinate that is not transformed.
 const FURTHEST: f64 = 8.0;
 const FURTHEST_IN_STEPS: f64 = 64.0;
 /// Relative distance of `zeta` from its limit at which a point lies on the contour.
 const NEAR: f64 = 3e-3;
 /// A bracket that is this narrow, relative to its distance from the minimum or to the square of this times the first step,
-/// contains a jump.
+/// contains a jump. In a transformed coordinate the distance counts as 1 at most: far from the minimum `zeta` may rise steeply
+/// without a jump, and this is a factor.
 const CLOSE: f64 = 1e-2;
 /// After a way around a jump has been found, the next step is this many times the width of the bracket.
 const ONWARD: f64 = 8.0;
@@ -40,7 +42,8 @@ pub struct Profile {
     /// Values of the parameter, ascending, with the smallest sum of squares for each.
     pub points: Vec<(f64, f64)>,
     /// Lower end of the interval; `None` if the sum of squares does not rise enough within a factor of 3000 (64 first steps of a
-    /// parameter without limits), or as far as the model exists.
+    /// parameter without limits), or as far as the model exists. If the parameter is above its search interval, the factor counts
+    /// from there.
     pub low: Option<f64>,
     /// Upper end, likewise.
     pub high: Option<f64>,
@@ -122,8 +125,15 @@ impl Walk<'_> {
     /// The end of the interval in the direction of `step`.
     fn end(&mut self, limit: f64, step: f64) -> Option<f64> {
         let parameter = &self.problem.parameters[self.j];
-        let furthest = if parameter.range == Range::Free { FURTHEST_IN_STEPS * step.abs() } else { FURTHEST };
         let origin = self.centre[self.j];
+        let (furthest, widest) = if parameter.range == Range::Free {
+            (FURTHEST_IN_STEPS * step.abs(), f64::INFINITY)
+        } else {
+            // A search that the data did not stop, as of a factor that is best at zero, may have left its interval far behind.
+            let (low, high) = parameter.search;
+            let outside = if step > 0.0 { parameter.inward(low) - origin } else { origin - parameter.inward(high) };
+            (FURTHEST + outside.max(0.0), 1.0)
+        };
         let end = |point: &Point| Some(parameter.outward(origin + point.reach));
         let mut inside = Point { reach: 0.0, zeta: 0.0, u: self.centre.clone() };
         let (mut along, mut stride) = (self.tangent.clone(), step);
@@ -137,7 +147,7 @@ impl Walk<'_> {
                     // The secant if zeta is a number on both sides, halfway otherwise; not too near to either.
                     let share = (limit - inside.zeta) / (beyond.zeta - inside.zeta);
                     let share = if beyond.zeta.is_finite() { share.clamp(0.2, 0.95) } else { 0.5 };
-                    let jumps = width.abs() <= CLOSE * beyond.reach.abs().max(CLOSE * step.abs());
+                    let jumps = width.abs() <= CLOSE * beyond.reach.abs().min(widest).max(CLOSE * step.abs());
                     (if jumps { beyond.reach } else { inside.reach + share * width }, jumps)
                 }
             };

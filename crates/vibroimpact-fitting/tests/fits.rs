@@ -249,6 +249,32 @@ fn an_end_is_a_point_of_the_contour_or_a_jump() {
     assert!(found.high.is_none() && (found.low.unwrap().ln() + 1.96).abs() < 0.01, "{found:?}");
 }
 
+/// A factor that is best at zero, and of which the data determine the upper end alone: the search is stopped at 1e-7.
+#[test]
+fn a_profile_reaches_the_search_interval_from_a_value_far_outside() {
+    for (range, best, truth) in
+        [(Range::Positive, 1e-7, 0.0196), (Range::Between { low: 0.0, high: 1.0 }, 1e-7, 0.0196)]
+    {
+        let problem = Problem {
+            parameters: vec![Parameter { range, ..Parameter::positive("a", 0.1, (0.01, 0.9)) }],
+            count: 1,
+            residuals: &|p, r| r[0] = p[0] / 0.01,
+            jacobian: None,
+        };
+        let found = profile(&problem, &Settings::default(), &[best], 1e-10, 0, 1.96 * 1.96, 1.96).unwrap();
+        assert!(found.low.is_none() && (found.high.unwrap() / truth - 1.0).abs() < 0.01, "{found:?}");
+    }
+    // the mirror image, of which they determine the lower end alone
+    let problem = Problem {
+        parameters: vec![Parameter::positive("a", 10.0, (1.0, 100.0))],
+        count: 1,
+        residuals: &|p, r| r[0] = 1.0 / p[0] / 0.01,
+        jacobian: None,
+    };
+    let found = profile(&problem, &Settings::default(), &[1e7], 1e-10, 0, 1.96 * 1.96, 1.96).unwrap();
+    assert!(found.high.is_none() && (found.low.unwrap() * 0.0196 - 1.0).abs() < 0.01, "{found:?}");
+}
+
 #[test]
 fn a_profile_of_one_parameter_or_from_a_point_that_is_no_minimum_is_found() {
     let one = Problem {

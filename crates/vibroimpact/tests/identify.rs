@@ -339,6 +339,34 @@ fn undetermined_combinations_are_reported() {
     assert!(found["undetermined"][0]["text"].as_str().unwrap().contains("structure.damping_ratios[0]"));
 }
 
+/// Restitutions that are a little higher than those without damping: the least sum of squares is at zero damping, far below the
+/// interval of the search, and the data still exclude a large one.
+#[test]
+fn a_damping_that_is_best_at_zero_has_an_upper_limit() {
+    let scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [900, 2500], "damping_ratios": [0.05, 0.05], "shape_at_location": [1.0, 0.7] },
+        "striker": { "mass_kg": 0.5, "speed_m_s": 1 },
+        "contact": { "law": "linear-spring", "stiffness_n_m": 4e5 }
+    });
+    let restitution = |damping: f64| {
+        let mut scene = scene.clone();
+        scene["structure"]["damping_ratios"] = json!([damping, 0.05]);
+        Scene::from_json(&scene.to_string()).unwrap().answer().unwrap().restitution.unwrap()
+    };
+    let measured = restitution(0.0) + 1e-3;
+    let sd = 0.01;
+    let table = format!("striker.speed_m_s,restitution,restitution_sd\n1,{measured},{sd}\n2,{measured},{sd}\n");
+    let found = identify(&scene, &table, &["--free", "structure.damping_ratios[0]=0.001..0.2"]);
+    let parameter = &found["parameters"][0];
+    let [low, high] = [0, 1].map(|end| parameter["profile_interval"][end].as_f64());
+    assert!(low.is_none() && parameter["determined"] == false, "{parameter}");
+    // 2 (1e-3 + fall)^2 / sd^2 = 2 (1e-3)^2 / sd^2 + 1.96^2
+    let rise = |damping: f64| 2.0 * ((measured - restitution(damping)).powi(2) - 1e-6) / (sd * sd);
+    assert!((rise(high.unwrap()).sqrt() / 1.96 - 1.0).abs() < 0.02, "{parameter}");
+    let text = found["undetermined"][0]["text"].as_str().unwrap();
+    assert_eq!(text, "The data determine only an upper limit of structure.damping_ratios[0].");
+}
+
 #[test]
 fn the_next_experiment_is_the_most_informative_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,15 +18,20 @@ const EXAMPLE: f64 = 0.1;
 /// Largest change of a coordinate in an example.
 const FURTHEST: f64 = 300.0;
 
-/// The combinations that are not determined, the worst first.
-pub(super) fn undetermined(information: &Information, coordinates: &[Parameter], values: &[f64]) -> Vec<Undetermined> {
+/// The combinations that are not determined, the worst first. `ends` are those of the profiles.
+pub(super) fn undetermined(
+    information: &Information,
+    coordinates: &[Parameter],
+    values: &[f64],
+    ends: &[[Option<f64>; 2]],
+) -> Vec<Undetermined> {
     let open = |direction: &Direction| direction.standard_deviation > OPEN;
     let told = |direction: Direction| {
         let entries = direction.vector.iter().zip(coordinates).filter(|(entry, _)| entry.abs() >= TOLD);
         Undetermined {
             direction: entries.map(|(entry, coordinate)| (coordinate.name.clone(), *entry)).collect(),
             standard_deviation: Some(direction.standard_deviation).filter(|sd| sd.is_finite()),
-            text: words(&direction, coordinates, values),
+            text: words(&direction, coordinates, values, ends),
         }
     };
     information.directions().into_iter().filter(open).map(told).collect()
@@ -76,7 +81,15 @@ fn product(coordinates: &[Parameter], powers: &[(usize, f64)]) -> String {
     of_sign(true).collect::<Vec<_>>().join(" · ") + &over
 }
 
-fn words(direction: &Direction, coordinates: &[Parameter], values: &[f64]) -> String {
+fn words(direction: &Direction, coordinates: &[Parameter], values: &[f64], ends: &[[Option<f64>; 2]]) -> String {
+    let lone = (0..coordinates.len()).find(|j| direction.vector[*j].powi(2) >= ALONE);
+    // without information where the search stopped, there may be some further away
+    let limit = |kind: &str, j: usize| format!("The data determine only {kind} limit of {}.", coordinates[j].name);
+    match lone.map(|j| (j, ends[j])) {
+        Some((j, [None, Some(_)])) => return limit("an upper", j),
+        Some((j, [Some(_), None])) => return limit("a lower", j),
+        _ => {}
+    }
     let mut parts: Vec<(f64, &Parameter, f64)> = direction
         .vector
         .iter()
@@ -132,11 +145,13 @@ fn words(direction: &Direction, coordinates: &[Parameter], values: &[f64]) -> St
 mod tests {
     use super::*;
 
+    const OPEN_ENDS: [[Option<f64>; 2]; 3] = [[None; 2]; 3];
+
     #[test]
     fn a_product_is_told_as_one() {
         // two readings, accurate to 1 %, of the product of two parameters
         let information = Information::of(&[100.0, 100.0, 100.0, 100.0], 2).unwrap();
-        let found = undetermined(&information, &["a", "b"].map(positive), &[1.0, 1.0]);
+        let found = undetermined(&information, &["a", "b"].map(positive), &[1.0, 1.0], &OPEN_ENDS);
         assert_eq!(found.len(), 1);
         assert!(
             found[0].text.contains("raising a by 10 % and lowering b by 9.1 %")
@@ -149,8 +164,13 @@ mod tests {
     #[test]
     fn a_parameter_without_effect_is_named() {
         let information = Information::of(&[100.0, 0.0], 2).unwrap();
-        let found = undetermined(&information, &["a", "b"].map(positive), &[1.0, 1.0]);
+        let found = undetermined(&information, &["a", "b"].map(positive), &[1.0, 1.0], &OPEN_ENDS);
         assert_eq!(found[0].text, "The data contain no information about b.");
+        for (ends, kind) in [([None, Some(2.0)], "an upper"), ([Some(0.1), None], "a lower")] {
+            let ends = [[Some(0.9), Some(1.1)], ends];
+            let found = undetermined(&information, &["a", "b"].map(positive), &[1.0, 1.0], &ends);
+            assert_eq!(found[0].text, format!("The data determine only {kind} limit of b."));
+        }
     }
 
     #[test]
@@ -161,11 +181,11 @@ mod tests {
         };
         // logistic coordinates: from 0.5 by one standard deviation of 2 to 1/(1 + e^-2)
         let weak = Information::of(&[0.5], 1).unwrap();
-        let found = undetermined(&weak, &[between(0.0, 1.0)], &[0.5]);
+        let found = undetermined(&weak, &[between(0.0, 1.0)], &[0.5], &OPEN_ENDS);
         assert!(found[0].text.ends_with("one standard deviation either way is 0.119 to 0.881."), "{}", found[0].text);
         let sum = Information::of(&[100.0, 100.0, 100.0, 100.0, 100.0, 100.0], 3).unwrap();
         let coordinates = [between(-1.0, 1.0), positive("a"), positive("b")];
-        for one in undetermined(&sum, &coordinates, &[0.0, 1.0, 1.0]) {
+        for one in undetermined(&sum, &coordinates, &[0.0, 1.0, 1.0], &OPEN_ENDS) {
             assert!(one.text.starts_with("The data leave a combination open: "), "{}", one.text);
             assert_eq!(one.text.contains("c from 0"), one.direction.contains_key("c"), "{}", one.text);
         }

@@ -12,7 +12,7 @@ use super::freedom::quantiles;
 use super::gauge::FORCE;
 use super::judge::lack_of_fit;
 use super::quantity::Quantity;
-use super::summary::{Identification, Identified, Noise, Predicted, ProfileCurve, RecordFit, StartFound};
+use super::summary::{Identification, Identified, Noise, Predicted, ProfileCurve, RecordFit, StartFound, Undetermined};
 use super::work::{FURTHEST, Work};
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene};
@@ -133,18 +133,20 @@ impl Work<'_> {
         let fields: Vec<String> = self.coordinates.iter().map(|parameter| parameter.name.clone()).collect();
         let mut residuals = vec![0.0; self.measured.len()];
         self.residuals(&self.parameters, &mut residuals);
-        let open = undetermined(&information, &self.coordinates, &self.parameters);
+        let followed: Vec<[Option<f64>; 2]> = profiles.iter().map(|profile| [profile.low, profile.high]).collect();
+        let open = undetermined(&information, &self.coordinates, &self.parameters, &followed);
         let takes_part = |j: &usize| open.iter().any(|combination| combination.direction.contains_key(&fields[*j]));
-        // along such a combination nothing but the limit of the search makes the sum of squares rise
+        // along such a combination of several fields nothing but the limit of the search makes the sum of squares rise
         let endless = |j: usize| {
             let further = |sd: Option<f64>| sd.is_none_or(|sd| sd > FURTHEST);
-            open.iter().any(|one| one.direction.contains_key(&fields[j]) && further(one.standard_deviation))
+            let several = |one: &Undetermined| one.direction.len() > 1 && one.direction.contains_key(&fields[j]);
+            open.iter().any(|one| several(one) && further(one.standard_deviation))
         };
         let members: Vec<usize> = (0..n).filter(takes_part).collect();
         let identified = |j: usize| {
             let (parameter, value) = (&self.coordinates[j], self.parameters[j]);
             let (u, half) = (parameter.inward(value), z[j] * sds[j]);
-            let ends = match [profiles[j].low, profiles[j].high] {
+            let ends = match followed[j] {
                 // another parameter has met the limit of the search there
                 [Some(_), None] | [None, Some(_)] if endless(j) => [None; 2],
                 ends => ends,
