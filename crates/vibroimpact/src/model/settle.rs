@@ -53,7 +53,7 @@ const FALLING: f64 = 0.5;
 /// Two impacts may agree by accident, and small changes may add up. The stated uncertainty from the truncated modes is
 /// therefore this factor times the estimate by which the restitution has converged, as far as the tolerance allows. Random
 /// scenes show that converged results are within their tolerance (`cargo xtask study-auto`).
-const LUCK: f64 = 4.0;
+pub(super) const LUCK: f64 = 4.0;
 /// Number of the last results that make up the spread if they do not converge.
 const SPREAD: usize = 4;
 

@@ -7,6 +7,14 @@
 //! u = |e - e_M| + max( 3 |e_M - e_(M/1.4)|, |e - e_M|/4 ) + d_c,
 //! ```
 //!
+//! If the stated modes have remainder modes for the others, they are often as many as `M`, and nothing but the change from `M/1.4` is
+//! left, which may be small by accident. It then counts four times, as where the program chooses the number of modes, and the
+//! energy of the remainder modes, which detects most accidents, sets a lower bound (`left_out.rs`):
+//!
+//! ```text
+//! u = |e - e_M| + max( 12 |e_M - e_(M/1.4)|, e_r, |e - e_M|/4 ) + d_c.
+//! ```
+//!
 //! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
 //! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact that
 //! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
@@ -17,9 +25,9 @@ use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
-use super::left_out::{Change, with_softer_remainder};
+use super::left_out::{Change, energy_of_remainder, taken_by_dashpot, with_softer_remainder};
 use super::pose::Pose;
-use super::settle::Conclusion;
+use super::settle::{Conclusion, LUCK};
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
@@ -101,14 +109,15 @@ struct Compared {
 /// The impact with another number of modes, or the impact itself.
 enum Other {
     Itself,
-    Solved(Solution),
+    /// With the possible error of its remainder modes, from their energy.
+    Solved(Solution, f64),
 }
 
 impl Other {
     fn or<'a>(&'a self, itself: &'a Solution) -> &'a Solution {
         match self {
             Other::Itself => itself,
-            Other::Solved(other) => other,
+            Other::Solved(other, _) => other,
         }
     }
 }
@@ -119,11 +128,25 @@ impl Compared {
         let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
         let change = |other: &Solution| Change::between(other, self.richer.or(solution), momentum_n_s);
         let stated = change(solution).restitution;
-        let further = |fewer: &Other| (CAUTION * change(fewer.or(solution)).size()).max(LEAST_SHARE * stated);
+        let energy = match &self.richer {
+            Other::Itself => energy_of(impact, solution),
+            Other::Solved(_, energy) => *energy,
+        };
+        let further = |fewer: &Other| {
+            let changed = CAUTION * change(fewer.or(solution)).size();
+            let possible = if impact.remainder_modes > 0 { (LUCK * changed).max(energy) } else { changed };
+            possible.max(LEAST_SHARE * stated)
+        };
         let further = self.fewer.as_ref().map_or(0.0, further);
         let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
         (stated + further + softer).min(1.0)
     }
+}
+
+/// Possible error of the remainder modes, from their energy after the impact.
+fn energy_of(impact: &Impact, solution: &Solution) -> f64 {
+    let Impact { structure, remainder_modes, striker, law, .. } = impact;
+    energy_of_remainder(structure, *remainder_modes, solution, striker) * taken_by_dashpot(law, striker)
 }
 
 /// Solves the impact with more modes; the inner `Err` states why the effect of the truncated modes is not known.
@@ -164,7 +187,9 @@ fn compare(
             return Ok((Other::Itself, complete(impact)));
         }
         let other = Impact { settings, ..posed(&with_modes(scene, count, modes), kept)? };
-        Ok((Other::Solved(solve(&other, kept, cost)?), complete(&other)))
+        let solution = solve(&other, kept, cost)?;
+        let energy = energy_of(&other, &solution);
+        Ok((Other::Solved(solution, energy), complete(&other)))
     };
     let (richer, nothing_left) = with(more)?;
     if nothing_left {
