@@ -166,9 +166,8 @@ impl<'a> March<'a> {
     fn pulls_of<'s>(&'s self, closed: &'s [usize]) -> impl Iterator<Item = Pull<'a>> + 's {
         let pull = |c: &usize| {
             let (force, h) = self.states[*c].touch()?.previous?;
-            // P_n' is n (n+1) at the end of [0, 1]
-            let slope: f64 = force.0.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
-            Some(Pull { link: &self.system.links[*c], force_n: force.at(1.0), rate_n_s: slope / h })
+            let ([_, force_n], [_, slope]) = (force.at_ends(), force.slopes_at_ends());
+            Some(Pull { link: &self.system.links[*c], force_n, rate_n_s: slope / h })
         };
         closed.iter().filter_map(pull)
     }

@@ -121,10 +121,11 @@ impl State {
     }
 
     /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
-    /// compression and rate at the nodes, and its compression at the end.
-    pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, end: f64) {
+    /// compression and rate at the nodes and at the end.
+    pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, (end, end_rate): (f64, f64)) {
         let Collocated { force: nodal, ends, compression, force_by_rate, .. } = solved;
         let work_j = self.work_j(&force, compression, end);
+        let ends_of_rate = [self.rate, end_rate];
         let Phase::Closed(touch) = &mut self.phase else { return };
         touch.force_by_rate = *force_by_rate;
         touch.begins = false;
@@ -136,7 +137,7 @@ impl State {
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * force.mean();
         statistics.squared_force_n2_s += h * dot(&BASIS.weights, &std::array::from_fn(|i| nodal[i] * nodal[i]));
-        statistics.compression_work_j += h * compression_work(solved, &force, rate);
+        statistics.compression_work_j += h * compression_work(solved, &force, rate, ends_of_rate);
         statistics.work_j += work_j;
     }
 
@@ -172,18 +173,16 @@ impl State {
 }
 
 /// Work of compression on a panel of unit length: the integral of force times rate over the parts on which the rate is positive.
-fn compression_work(solved: &Collocated, force: &Legendre, rate: &Nodal) -> f64 {
-    let rates = Legendre::through(rate);
-    let ends = rates.at_ends();
-    let least = rate.iter().fold(ends[0].min(ends[1]), |least, rate| rate.min(least));
-    let most = rate.iter().fold(ends[0].max(ends[1]), |most, rate| rate.max(most));
-    if least >= 0.0 {
+fn compression_work(solved: &Collocated, force: &Legendre, rate: &Nodal, ends: [f64; 2]) -> f64 {
+    let everywhere = |holds: fn(f64) -> bool| rate.iter().chain(&ends).all(|rate| holds(*rate));
+    if everywhere(|rate| rate >= 0.0) {
         return dot(&BASIS.weights, &std::array::from_fn(|i| solved.force[i] * rate[i]));
     }
-    if most <= 0.0 {
+    if everywhere(|rate| rate <= 0.0) {
         return 0.0;
     }
-    let quotient = solved.quotient(force);
+    let (rates, quotient) = (Legendre::through(rate), solved.quotient(force));
+    let ends = rates.at_ends();
     let between = |from: f64, to: f64| {
         let power = |i: usize| {
             let place = from + (to - from) * BASIS.nodes[i];

@@ -188,7 +188,7 @@ impl<'a> March<'a> {
             let state = &mut self.states[c];
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
-                state.book(h, &solved[i], force[i], &rate, end(i).0);
+                state.book(h, &solved[i], force[i], &rate, end(i));
             }
             (state.overlap, state.rate) = end(i);
         }

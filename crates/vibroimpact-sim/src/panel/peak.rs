@@ -1,7 +1,7 @@
 //! The largest value of a quantity over many panels.
 
 use super::ends::Ends;
-use super::legendre::{Nodal, Q};
+use super::legendre::{Legendre, Nodal, Q};
 
 /// The largest value of a quantity over the steps of a contact. It lies in the step with the largest nodal value or in one beside
 /// it: a maximum beside the end of a long step can lie above its nodes by more than above those of the short step that adjoins it.
@@ -30,6 +30,12 @@ impl Step {
     fn maximum(&self) -> f64 {
         self.largest.max(self.ends.maximum(&self.ends.quotient(&self.nodal)).1)
     }
+
+    /// Whether it is higher inside than towards the highest step, at its end or at its start.
+    fn turns(&self, at_end: bool) -> bool {
+        let [at_start, at_the_end] = Legendre::through(&self.nodal).slopes_at_ends();
+        !self.ends.is_smooth() || if at_end { at_the_end < 0.0 } else { at_start > 0.0 }
+    }
 }
 
 impl Peak {
@@ -52,8 +58,10 @@ impl Peak {
 
     pub fn value(&self) -> f64 {
         let least = CLOSE * self.highest.largest;
-        let beside = [Some(self.before), self.after].into_iter().flatten().filter(|step| step.largest >= least);
-        beside.map(|step| step.maximum()).fold(self.highest.maximum(), f64::max)
+        let may_be_higher = |step: &Step, at_end| step.largest >= least && step.turns(at_end);
+        let beside = [(Some(self.before), true), (self.after, false)];
+        let turning = beside.into_iter().filter_map(|(step, at_end)| step.filter(|step| may_be_higher(step, at_end)));
+        turning.map(|step| step.maximum()).fold(self.highest.maximum(), f64::max)
     }
 }
 

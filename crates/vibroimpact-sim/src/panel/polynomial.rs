@@ -62,6 +62,14 @@ impl Legendre {
         [even - odd, even + odd]
     }
 
+    /// Its slopes at 0 and at 1.
+    pub fn slopes_at_ends(&self) -> [f64; 2] {
+        // P_n' is n (n+1) at 1, of this sign or the other at 0
+        let slopes = Legendre(std::array::from_fn(|n| (n * (n + 1)) as f64 * self.0[n]));
+        let [at_start, at_end] = slopes.at_ends();
+        [-at_start, at_end]
+    }
+
     /// Its values at as many places as there are nodes.
     pub fn at_each(&self, places: &[f64; Q]) -> [f64; Q] {
         let Legendre(coefficients) = self;
