@@ -1,5 +1,6 @@
 """Structures from other programs, compared with our own beam, and input that their readers reject."""
 
+import gzip
 import json
 import math
 
@@ -644,6 +645,48 @@ def test_matrices_that_no_structure_has_are_refused():
     assert structures.from_matrices(k, m, {"p": 29}, 3, shift=100.0).omega_rad_s == pytest.approx(exact.omega_rad_s)
 
 
+def test_numbers_of_a_matrix_file_are_read_whole_or_refused(tmp_path):
+    pytest.importorskip("scipy")
+    head = "%%MatrixMarket matrix coordinate real symmetric\n% two masses on two springs\n"
+    stiffness = head + "2 2 3\n1 1 2.0e+5\n2 1 -1.0e+5\n2 2 1.0e+5\n"
+
+    def read(mass, name="mass.mtx"):
+        (tmp_path / "stiffness.mtx").write_text(stiffness.replace("\n", "\r\n"), newline="")
+        (tmp_path / name).write_bytes(mass if isinstance(mass, bytes) else mass.encode())
+        return structures.from_matrices(tmp_path / "stiffness.mtx", tmp_path / name, {"p": 1}, 1).omega_rad_s[0]
+
+    whole = head + "2 2 2\n1 1 5.0e-1\n2 2 5.0e-1"
+    exact = math.sqrt(1e5 / 0.5 * (3 - math.sqrt(5)) / 2)
+    for mass, name in [(whole, "mass.mtx"), (whole.replace("5.0e-1", ".5"), "mass.mtx"), (gzip.compress(whole.encode()), "mass.mtx.gz")]:
+        assert read(mass, name) == pytest.approx(exact, rel=1e-9)
+    # Exponents as Fortran writes them, a decimal comma, and a file that is cut off.
+    for mass, told in [
+        (whole.replace("e-", "D-"), "mass.mtx, line 4: '5.0D-1' is not allowed"),
+        (whole.replace("e-", "-"), "mass.mtx, line 4: '5.0-1' is not allowed"),
+        (whole.replace("5.0e-1", "0,5"), "mass.mtx, line 4: '0,5' is not allowed"),
+        (whole[:-1], "mass.mtx, line 5: '5.0e-' is not allowed"),
+        (whole[:-6], "mass.mtx is not a whole Matrix Market file"),
+        (whole[:-10], "mass.mtx is not a whole Matrix Market file"),
+        ("1 2 3", "mass.mtx is not a Matrix Market file"),
+    ]:
+        with pytest.raises(ValueError, match=told):
+            read(mass)
+    with pytest.raises(ValueError, match="mass is not allowed; it must have an entry other than 0"):
+        structures.from_matrices(np.eye(3), np.zeros((3, 3)), {"p": 0}, 1)
+    with pytest.raises(ValueError, match="every degree of freedom has stiffness or mass"):
+        structures.from_matrices(np.diag([1.0, 2.0, 0.0]), np.diag([1.0, 1.0, 0.0]), {"p": 0}, 1)
+
+
+def test_damping_ratios_are_one_for_all_modes_or_one_for_each():
+    folder = FILES / "calculix"
+    files = (folder / "cantilever.dat", folder / "cantilever.frd", {"tip": (293, UP)})
+    assert list(structures.from_calculix(*files, damping_ratios=0.01).damping_ratios) == [0.01] * 8
+    each = [0.001 * k for k in range(8)]
+    assert list(structures.from_calculix(*files, damping_ratios=each).damping_ratios) == each
+    with pytest.raises(ValueError, match="damping_ratios = 2 values is not allowed; it must be as long as the number of modes, 8"):
+        structures.from_calculix(*files, damping_ratios=[0.01, 0.02])
+
+
 def test_a_soft_support_beside_a_stiff_part_is_not_lost():
     pytest.importorskip("scipy")
     # A ground spring of 1 N/m below a stiff link is lost in the sum of both, or a share of it is.
@@ -672,6 +715,7 @@ def test_files_of_calculix_that_are_not_whole_or_belong_to_other_jobs_are_refuse
         )
 
     assert np.array_equal(read().shapes["tip"], calculix().shapes["tip"])
+    assert np.array_equal(read(modes_frd=frd + "\n\n").shapes["tip"], calculix().shapes["tip"])
     # Cut off at any place: within a number, at the end of a line, before the last line.
     last = frd.rindex(" -1       293")
     for place in (0, 1000, last, last + 20, last + 47, len(frd) - 6):

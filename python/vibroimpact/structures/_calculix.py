@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._structure import Floats, Structure, direction, frequencies, static_compliances, units
+from ._structure import Floats, Structure, damping_of_modes, direction, frequencies, static_compliances, units
 
 _NUMBER = r"[-+]?\d\.\d+E[-+]\d+"
 # Relative difference of the eigenvalues of a mode in two files, which have six and seven digits.
@@ -79,7 +79,7 @@ def from_calculix(
         seen = {other: pair for other, pair in nodes.items() if other == name or pair[0] in loaded[0].nodes}
         moved[name] = {other: float(_at(loaded[0], node, file) @ along) for other, (node, along) in seen.items()}
     compliances = static_compliances(force, omega, shapes, moved, static or {})
-    damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
+    damping = damping_of_modes(damping_ratios, len(omega))
     return Structure(
         omega_rad_s=omega,
         shapes={name: shape * shape_factor for name, shape in shapes.items()},
@@ -113,8 +113,8 @@ def _displacements(path: Path) -> list[_Block]:
     mode: int | None = None
     eigenvalue: float | None = None
     stated = 0
-    lines = path.read_text(encoding="ascii", errors="replace").splitlines()
-    if not lines or lines[-1].strip() != "9999":
+    lines = path.read_text(encoding="ascii", errors="replace").rstrip().splitlines()
+    if not lines or lines[-1].lstrip() != "9999":
         raise ValueError(f"{path} is not a whole .frd file: it must end with the line 9999; is it cut off, or is the job still running?")
     for number, line in enumerate(lines, start=1):
         try:

@@ -14,19 +14,26 @@ the one with ``R^T M x = 0``.
 
 from __future__ import annotations
 
+import bz2
+import gzip
+import re
 from collections.abc import Mapping, Sequence
-from os import PathLike
+from io import BytesIO
+from os import PathLike, fspath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._structure import Floats, Structure, units
+from ._structure import Floats, Structure, damping_of_modes, units
 
 # Eigenvalues of rigid-body modes are below this multiple of the effect of rounding: sums of rounded entries are rounded as well.
 _RIGID = 4.0
 # Eigenvalues of elastic modes are at least this multiple of it.
 _ELASTIC = 100.0
+# A word that is not a number. scipy takes the number with which a word begins, and would read 1.5D+03 as 1.5.
+_NO_NUMBER = re.compile(r"(?<!\S)(?![-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?!\S))\S+")
 
 
 def from_matrices(
@@ -67,6 +74,8 @@ def from_matrices(
     loads = {name: _load(name, point, size) for name, point in points.items()}
     _refuse_negative("stiffness", k, rounding)
     _refuse_negative("mass", m, float(np.finfo(np.float64).eps))
+    if not m.diagonal().any():
+        raise ValueError("mass is not allowed; it must have an entry other than 0")
     if shift is not None and not _factorises(k - shift * m):
         raise ValueError(f"shift = {shift} is not allowed; it must be less than the lowest eigenvalue")
     if shift is None:
@@ -80,6 +89,10 @@ def from_matrices(
         raise ValueError(
             f"count = {count} is not allowed; it must be a number of modes that stiffness and mass have: fewer than the degrees of "
             f"freedom with mass, and a mass matrix without negative eigenvalues ({error})"
+        ) from error
+    except RuntimeError as error:  # the shifted matrix is singular
+        raise ValueError(
+            "stiffness is not allowed; it must be such that every degree of freedom has stiffness or mass: leave out those without both"
         ) from error
     vectors = vectors / np.sqrt(np.einsum("ij,ij->j", vectors, m @ vectors))
     eigenvalues = np.einsum("ij,ij->j", vectors, k @ vectors)
@@ -115,7 +128,7 @@ def from_matrices(
         return float(balanced @ answer)
 
     omega = np.where(rigid, 0.0, np.sqrt(np.maximum(eigenvalues, 0.0)))
-    damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
+    damping = damping_of_modes(damping_ratios, count)
     return Structure(
         omega_rad_s=omega,
         shapes={name: vectors.T @ load * shape_factor for name, load in loads.items()},
@@ -125,10 +138,9 @@ def from_matrices(
 
 
 def _matrix(name: str, given: Any) -> Any:
-    from scipy.io import mmread
     from scipy.sparse import csr_array
 
-    matrix = csr_array(mmread(given) if isinstance(given, (str, PathLike)) else given)
+    matrix = csr_array(_read(given) if isinstance(given, (str, PathLike)) else given)
     if np.iscomplexobj(matrix.data):
         if np.any(matrix.data.imag != 0.0):
             raise ValueError(f"{name} is not allowed; it must be a matrix of real numbers: state damping by damping_ratios")
@@ -141,6 +153,25 @@ def _matrix(name: str, given: Any) -> Any:
     if abs(matrix - matrix.T).max() > 1e-9 * abs(matrix).max():
         raise ValueError(f"{name} is not allowed; it must be a symmetric matrix")
     return matrix
+
+
+def _read(path: str | PathLike[str]) -> Any:
+    """The matrix of a Matrix Market file, which may be compressed."""
+    from scipy.io import mmread
+
+    content = Path(path).read_bytes()
+    unpack = {".gz": gzip.decompress, ".bz2": bz2.decompress}.get(Path(path).suffix)
+    content = unpack(content) if unpack else content
+    if not content.lower().startswith(b"%%matrixmarket"):
+        raise ValueError(f"{fspath(path)} is not a Matrix Market file: it must begin with %%MatrixMarket")
+    numbers = re.sub(r"^[ \t]*%.*$", "", content.decode("ascii", errors="replace"), flags=re.MULTILINE)
+    if wrong := _NO_NUMBER.search(numbers):
+        line = 1 + numbers.count("\n", 0, wrong.start())
+        raise ValueError(f"{fspath(path)}, line {line}: {wrong[0]!r} is not allowed; it must be a number, such as 1.5e+03")
+    try:
+        return mmread(BytesIO(content + b"\n"))
+    except ValueError as error:
+        raise ValueError(f"{fspath(path)} is not a whole Matrix Market file: {error}") from error
 
 
 def _refuse_negative(name: str, matrix: Any, rounding: float) -> None:

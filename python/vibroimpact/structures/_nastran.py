@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ._structure import Floats, Structure, direction, frequencies, static_compliances, units
+from ._structure import Floats, Structure, damping_of_modes, direction, frequencies, static_compliances, units
 
 
 # Eigenvalues of a table and of vectors are the same within this share, and this share of the largest.
@@ -59,7 +59,7 @@ def from_nastran(
         seen = {other: pair for other, pair in nodes.items() if other == name or pair[0] in loaded.node_gridtype[:, 0]}
         moved[name] = {other: float(_at(loaded, node, file)[0] @ along) for other, (node, along) in seen.items()}
     compliances = static_compliances(force, omega, shapes, moved, files)
-    damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
+    damping = damping_of_modes(damping_ratios, len(omega))
     return Structure(
         omega_rad_s=omega,
         shapes={name: shape * shape_factor for name, shape in shapes.items()},

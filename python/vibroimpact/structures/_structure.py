@@ -191,6 +191,14 @@ def frequencies(path: str | PathLike[str], eigenvalues: Floats, supported: bool 
     return np.asarray(np.sqrt(values))
 
 
+def damping_of_modes(given: ArrayLike | None, count: int) -> Floats | None:
+    """A damping ratio for each mode, from a list of them or one for all."""
+    if given is None:
+        return None
+    ratios = np.asarray(given, dtype=np.float64)
+    return _numbers("damping_ratios", np.full(count, ratios) if ratios.ndim == 0 else ratios, count)
+
+
 def direction(name: str, given: Sequence[float]) -> Floats:
     """The unit vector along which a point is struck."""
     vector = np.asarray(given, dtype=np.float64)
