@@ -52,19 +52,21 @@ impl StopReason {
     pub fn advice(self) -> &'static str {
         match self {
             StopReason::Steps => {
-                "the limit of steps in contact was reached: add damping, loosen the tolerance, or allow more steps"
+                "the limit of steps in contact was reached: take fewer modes, add damping, or allow more steps (max_steps in Rust)"
             }
             StopReason::FinestStep => {
                 "a contact needs steps that are too short for floating-point numbers: loosen the tolerance, or bring masses and \
                  stiffnesses closer together"
             }
-            StopReason::SubImpacts => "the limit of contacts was reached: allow more, or add damping",
+            StopReason::SubImpacts => {
+                "the limit of contacts was reached: add damping, or allow more (max_sub_impacts in Rust)"
+            }
             StopReason::LawRange => {
                 "a compression or its rate exceeded 1e30, the limit up to which contact laws are defined: check the units"
             }
             StopReason::Flight => {
                 "the surfaces approach each other again and again without touching: change the gap, add damping, or \
-                 allow more steps"
+                 allow more steps (max_steps in Rust)"
             }
             StopReason::DigitsExhausted => {
                 "the next contacts depend on more digits than floating-point numbers have: the listed contacts are \

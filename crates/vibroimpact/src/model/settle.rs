@@ -13,10 +13,13 @@
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
 //! with every further number: its errors are part of the differences, and restitutions agree when both have become small.
 //!
+//! More modes take more and shorter steps. Where an impact reaches the limit of its steps, the modes before, or fewer, are the last ones.
+//!
 //! Only a difference between two *different* numbers of modes contains information about the truncated modes. At the end of a
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 
 use super::choice::Choice;
@@ -128,6 +131,12 @@ impl Rung {
     fn has_several_contacts(&self) -> bool {
         self.solution.sub_impacts.len() > 1
     }
+
+    /// Whether it reached a limit of steps or contacts, which the impact with fewer modes may not reach.
+    fn takes_too_many_steps(&self) -> bool {
+        use StopReason::{Flight, Steps, SubImpacts};
+        matches!(self.solution.outcome, Outcome::Stopped(Steps | Flight | SubImpacts))
+    }
 }
 
 fn solve(pose: &mut Pose, impact: &Impact, cost: &mut Cost) -> Result<(Solution, Option<Recording>), InvalidInput> {
@@ -147,6 +156,8 @@ struct Rungs {
     momentum_n_s: f64,
     /// The number of modes, if there is one, that makes up the whole static compliance.
     complete: Option<usize>,
+    /// The number of modes with which the impact reached a limit of steps.
+    too_many: Option<usize>,
 }
 
 impl Rungs {
@@ -253,11 +264,20 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
     let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
-    let mut rungs = Rungs { last: first, earlier: Vec::new(), momentum_n_s: momentum_n_s(pose), complete };
+    let mut rungs =
+        Rungs { last: first, earlier: Vec::new(), momentum_n_s: momentum_n_s(pose), complete, too_many: None };
     loop {
         let count = rungs.last.count;
+        if rungs.last.takes_too_many_steps() && (count > 1 || !rungs.earlier.is_empty()) {
+            rungs.too_many = Some(count);
+            rungs.last = match rungs.earlier.pop() {
+                Some(before) => before,
+                None => Rung::new(pose, fewer(fewer(count)).max(1), settings(tolerance, tightened), cost)?,
+            };
+            continue;
+        }
         let several_contacts = rungs.last.has_several_contacts();
-        let ends = LEAST_RAISE * count as f64 > most as f64;
+        let ends = LEAST_RAISE * count as f64 > most as f64 || rungs.too_many.is_some();
         // the energy of one impact shows that its modes are too few; otherwise a change has to
         let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
@@ -289,7 +309,11 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             let raised = more(count);
             tightened += usize::from(several_contacts);
             if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised }
-        } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(tolerance)) {
+        } else if listed
+            && tighter
+            && rungs.too_many.is_none()
+            && (several || !both || 4.0 * solver > left_out.min(tolerance))
+        {
             // the list is at its end, and the solver's error may be part of the change
             tightened += 1;
             if !rungs.is_complete() {
@@ -343,6 +367,10 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Op
             small(change.flights)
         ),
         None => "the effect of further modes is not known".to_owned(),
+    };
+    let changed = match rungs.too_many {
+        Some(count) => format!("{changed}; with {count} modes the impact takes more steps than are allowed"),
+        None => changed,
     };
     match spread {
         _ if settled => format!("modal: the restitution has converged with {counts} modes; {changed}"),
