@@ -425,6 +425,23 @@ fn balls_that_rest_against_each_other_do_not_graze() {
     assert_eq!(covered, compared);
 }
 
+/// A ball that begins compressed in a dashpot of `D = 1.6 (1 - e)/e/v_0` creeps out of it with the speed `1/D`: `[restitution, mass]`.
+#[test]
+fn a_ball_that_creeps_out_of_a_strong_dashpot_has_derivatives() {
+    fn pose(numbers: &[f64]) -> (Assembly<Law>, f64) {
+        let [restitution, mass] = numbers.try_into().unwrap();
+        let law = Flores::new(2.6e9, restitution).unwrap().into();
+        let contact = Contact { sides: [of_mass(0, mass), Point::Ground], gap_m: -6.3e-5, law };
+        (Assembly { bodies: vec![Body::mass(mass, 0.0, 0.0)], contacts: vec![contact], loads: Vec::new() }, 3e-3)
+    }
+    let found = Case { pose, numbers: vec![0.56, 0.06] }.differentiate(1e-10);
+    let [by_restitution, by_mass] = all(&found.derivatives).try_into().unwrap();
+    let (by_restitution, by_mass) = (&by_restitution.contacts[0], &by_mass.contacts[0]);
+    let expected = 1e-6 / 1.6 / (1.0f64 - 0.56).powi(2);
+    assert!((by_restitution.velocity_m_s[0].value - expected).abs() < 1e-6 * expected, "{by_restitution:?}");
+    assert!(by_mass.velocity_m_s[0].value.abs() < 1e-12, "{by_mass:?}");
+}
+
 /// With another gap between them they may touch later, or press on each other immediately.
 #[test]
 fn balls_that_touch_without_speed_have_no_derivative_by_their_gap() {

@@ -3,7 +3,7 @@
 
 use crate::common::Intervals;
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment, TautString};
-use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
+use contact_models::{Flores, Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
@@ -294,6 +294,29 @@ fn rounding_at_a_strong_dashpot_does_not_shorten_the_steps() {
     assert!(error(|run| &run.amplitude).max(error(|run| &run.rate)) < 1e-9);
     let steps = [&coarse, &fine].map(|run| run.counts.contact_steps);
     assert!(steps[1] < 4 * steps[0], "{steps:?}");
+}
+
+/// Surfaces that begin compressed without a speed of approach have the damping `D` of the lowest approach speed of Flores's law. The
+/// ball is pushed out with the speed `v` by `m v' = F_0 (1 - D v)`: after some `m/(F_0 D) = 4e-11 s` it creeps with `1/D`, and the integral
+/// of the square of the force is `m F_0/2D`.
+#[test]
+fn a_ball_that_creeps_out_of_a_strong_dashpot_takes_few_steps() {
+    let (mass_kg, stiffness, restitution, overlap_m, lowest) = (0.06f64, 2.6e9, 0.56, 6.3e-5f64, 1e-6);
+    let law = Law::from(Flores::new(stiffness, restitution).unwrap());
+    let contact = Contact { sides: [on(0, &[mass_kg.sqrt().recip()]), Point::Ground], gap_m: -overlap_m, law };
+    let bodies = vec![Body::mass(mass_kg, 0.0, 0.0)];
+    let assembly = Assembly { bodies, contacts: vec![contact], loads: vec![] };
+    let damping = 1.6 * (1.0 - restitution) / restitution / lowest;
+    let squared = 0.5 * mass_kg * stiffness * overlap_m.powf(1.5) / damping;
+    for tolerance in [1e-9, 1e-12] {
+        let run = run(&assembly, &Settings { tolerance, ..Settings::until(3e-3) }, &mut ()).unwrap();
+        assert!(run.counts.steps() < 100 && run.counts.rejected_steps < 20, "{:?}", run.counts);
+        let end = &run.contacts[0];
+        let speed = end.velocity_m_s[0];
+        assert!((speed * damping - 1.0).abs() < 1e-9, "{speed} {damping}");
+        let found = end.statistics.squared_force_n2_s;
+        assert!((found - squared).abs() < 1e-6 * squared, "{found} {squared}");
+    }
 }
 
 #[test]

@@ -26,6 +26,8 @@ pub(crate) struct Response {
     /// At the end, to Legendre forces (m/N), and its rate (m/(N s)).
     pub end: Nodal,
     pub end_rate: Nodal,
+    /// Inverse mass of the rigid modes in it (1/kg).
+    pub rigid: f64,
 }
 
 /// Free motion and forced responses of all modes on a panel.
@@ -154,7 +156,7 @@ impl Tables {
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
             // another thread may have been first; its result is the same
-            let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate }));
+            let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate, rigid: 0.0 }));
         }
     }
 
@@ -486,14 +488,14 @@ pub(crate) fn with_rigid_modes(mut nodes: [Nodal; Q], inverse_mass: f64, h: f64)
 impl Response {
     /// With that of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
-        let Response { nodes, mut end, mut end_rate } = *self;
+        let Response { nodes, mut end, mut end_rate, .. } = *self;
         let nodes = with_rigid_modes(nodes, inverse_mass, h);
         let moved = inverse_mass * h * h;
         // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on
         end[0] -= moved / 2.0;
         end[1] += moved / 6.0;
         end_rate[0] -= inverse_mass * h;
-        Response { nodes, end, end_rate }
+        Response { nodes, end, end_rate, rigid: inverse_mass }
     }
 
     /// Work of unit Legendre forces of one contact over the motion by those of the other, by quadrature: `[m][n]` of `P_n` over the

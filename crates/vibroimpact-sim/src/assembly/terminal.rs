@@ -3,7 +3,7 @@
 //! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series. Their
 //! coefficients at the contacts do not depend on the trial length.
 
-use super::collocate::{Collocated, Newton, Unknown, collocate};
+use super::collocate::{Collocated, Mobility, Newton, Unknown, collocate};
 use super::load::Loads;
 use super::solution::Counts;
 use super::system::{Link, Span, System};
@@ -43,6 +43,8 @@ pub(crate) struct Window {
 struct Kernel {
     derivatives: Series,
     powers: usize,
+    /// Inverse mass of the rigid modes that both contacts move (1/kg).
+    rigid: f64,
 }
 
 /// A solved terminal panel.
@@ -102,7 +104,8 @@ impl Window {
         self.free.push(series);
         for other in &self.contacts[..self.closed] {
             let derivatives = tables.kernel(system, c, *other);
-            self.kernels.push(Kernel { derivatives, powers: powers(&derivatives) });
+            let rigid = system.links[c].shared_rigid(&system.links[*other]);
+            self.kernels.push(Kernel { derivatives, powers: powers(&derivatives), rigid });
         }
     }
 
@@ -134,7 +137,10 @@ impl Window {
             unknown.free = values(&moved, length);
         }
         let mut solved = Vec::new();
-        let response = |c: usize, other: usize| responses[c * self.closed + other].as_ref();
+        let response = |c: usize, other: usize| {
+            let pair = c * self.closed + other;
+            Some(Mobility { nodes: responses[pair].as_ref()?, rigid: self.kernels[pair].rigid })
+        };
         if !collocate(unknowns, response, length, (newton, &mut solved), counts) {
             return None;
         }

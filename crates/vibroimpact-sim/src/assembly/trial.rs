@@ -1,7 +1,7 @@
 //! A panel of `2^-j` s with closed contacts: the forces by the laws, and their effect on the motion. A trial does not change the
 //! motion; a panel that passes the checks is accepted.
 
-use super::collocate::{Collocated, Unknown, collocate};
+use super::collocate::{Collocated, Mobility, Unknown, collocate};
 use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
@@ -45,7 +45,10 @@ impl<'a> March<'a> {
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i], |c| self.begins(c)));
         let (system, responses) = (self.system, &*self.responses);
-        let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]).map(|r| &r.nodes);
+        let response = |i: usize, j: usize| {
+            let response = responses.of(system, level, contacts[i], contacts[j])?;
+            Some(Mobility { nodes: &response.nodes, rigid: response.rigid })
+        };
         if !collocate(unknowns, response, h, (&mut self.newton, solved), &mut self.counts) {
             return false;
         }

@@ -1,6 +1,7 @@
 //! All modes on panels of one length, with the weighted responses for the derivatives.
 
 use crate::assembly::change::Change;
+use crate::assembly::collocate::Mobility;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tables::{Forced, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
@@ -23,6 +24,12 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
+    /// How the force of one closed contact moves the overlap of another.
+    pub fn mobility(&self, system: &System, closed: &[usize], (p, q): (usize, usize)) -> Mobility<'_> {
+        let rigid = system.links[closed[p]].shared_rigid(&system.links[closed[q]]);
+        Mobility { nodes: &self.responses[p * closed.len() + q], rigid }
+    }
+
     /// The modes next to critical damping whose damping a change moves, and by how much.
     pub fn critical<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = (usize, f64, &'a ByDamping)> {
         change.critical.iter().filter_map(|(k, by_zeta)| Some((*k, *by_zeta, self.critical.get(k)?)))

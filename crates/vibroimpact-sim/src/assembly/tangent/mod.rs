@@ -175,9 +175,9 @@ impl Walk<'_> {
         let solved = self.solved(stretch, &expansion);
         if !closed.is_empty() {
             let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
-            let n = closed.len();
-            let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
-            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.responses[p * n + q]);
+            let system = self.system;
+            let shares = |p: usize, q: usize| system.neighbours[closed[p]].contains(&closed[q]);
+            let response = |p: usize, q: usize| shares(p, q).then(|| expansion.mobility(system, &closed, (p, q)));
             self.blocks.factor(&values, |q| solved[q].ends, &response, h);
         }
         let from = [stretch.amplitude.as_slice(), &stretch.rate];

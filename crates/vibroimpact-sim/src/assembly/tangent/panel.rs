@@ -68,17 +68,23 @@ impl Walk<'_> {
     pub fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
         let (h, n) = (stretch.length_s, stretch.forces.len());
         let place = BASIS.nodes.map(|s| s * h);
+        let closed: Vec<usize> = stretch.forces.iter().map(|acting| acting.contact).collect();
         let of = |(p, Acting { contact: c, force, ends }): (usize, &Acting)| {
             let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
             let branch = stretch.contacts[*c].branch?;
             let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
             let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
-            compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
+            compression.iter_mut().enumerate().for_each(|(i, value)| *value += moved(i));
+            let mut missed = [0.0; Q];
             for (q, other) in stretch.forces.iter().enumerate() {
                 let nodal = other.force.nodal();
                 add(&mut compression, 1.0, &apply(&expansion.responses[p * n + q], &nodal));
+                add(&mut missed, 1.0, &expansion.mobility(self.system, &closed, (p, q)).missed(&nodal, h));
             }
-            let rate = slopes(followed.overlap, &compression, h);
+            // the value at the start is added later, since slopes would magnify its rounding on short panels
+            let mut rate = slopes(0.0, &compression, h);
+            add(&mut rate, 1.0, &missed);
+            compression.iter_mut().for_each(|value| *value += followed.overlap);
             let law = self.posed.laws[*c];
             let nodal = force.nodal();
             let force_rate = force.derivative().nodal().map(|slope| slope / h);
@@ -156,7 +162,6 @@ impl Walk<'_> {
             let Seen { start, moved: mut found, timed_start, mut timed } =
                 self.seen(d, c, &expansion.forced, [amplitude, rate], [a, b, &passage.bends[0]]);
             let start = start + self.beyond(d, c, from.start_s)[0];
-            found.iter_mut().for_each(|value| *value += start);
             timed.iter_mut().for_each(|value| *value += timed_start);
             for (q, other) in solved.iter().enumerate() {
                 let places = expansion.changed[(d * n + p) * n + q];
@@ -187,7 +192,8 @@ impl Walk<'_> {
             if let Some(loads) = &self.load_changes[d] {
                 found.iter_mut().zip(BASIS.nodes).for_each(|(found, s)| *found += loads.moved(c, from.start_s, s * h));
             }
-            let slope = slopes(start, &found, h);
+            let slope = slopes(0.0, &found, h);
+            found.iter_mut().for_each(|value| *value += start);
             let by_law = self.force_change(d, own);
             law.push(array::from_fn(|i| {
                 own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * slope[i] + by_law[i]
@@ -316,6 +322,7 @@ impl Walk<'_> {
         let (h, n) = (from.length_s, solved.len());
         let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to[0].len()]);
         let carried: Vec<Nodal> = solved.iter().map(|own| times(&BASIS.nodes, &own.force_rate)).collect();
+        let closed: Vec<usize> = solved.iter().map(|own| own.contact).collect();
         let respond = |p: usize, force: &[Nodal]| {
             let mut moved = [0.0; Q];
             for (q, force) in force.iter().enumerate() {
@@ -325,7 +332,10 @@ impl Walk<'_> {
         };
         let by_law = |(p, own): (usize, &Solved)| -> Nodal {
             let moved = respond(p, &carried);
-            let slope = slopes(0.0, &moved, h);
+            let mut slope = slopes(0.0, &moved, h);
+            for (q, force) in carried.iter().enumerate() {
+                add(&mut slope, 1.0, &expansion.mobility(self.system, &closed, (p, q)).missed(force, h));
+            }
             let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
             array::from_fn(|i| {
                 let (law, s) = (&own.law[i], BASIS.nodes[i]);
