@@ -442,6 +442,31 @@ fn a_ball_that_creeps_out_of_a_strong_dashpot_has_derivatives() {
     assert!(by_mass.velocity_m_s[0].value.abs() < 1e-12, "{by_mass:?}");
 }
 
+/// A ball that rests on the ground without force, under a load that is zero: `[load, mass, stiffness]`.
+#[test]
+fn a_contact_that_rests_without_force_has_no_derivative_by_what_moves_it() {
+    fn resting(law: Law, numbers: &[f64]) -> (Assembly<Law>, f64) {
+        let [load, mass] = [numbers[0], numbers[1]];
+        let contact = Contact { sides: [of_mass(0, mass), Point::Ground], gap_m: 0.0, law };
+        let force = Force::Sampled { times_s: vec![2e-4, 1e-3], forces_n: vec![load, load] };
+        let loads = vec![Load { body: 0, shape: vec![mass.sqrt().recip()], force }];
+        (Assembly { bodies: vec![Body::mass(mass, 0.0, 0.0)], contacts: vec![contact], loads }, 6e-3)
+    }
+    let numbers = vec![0.0, 0.2, 1e6];
+    let linear: Pose = |numbers| resting(KelvinVoigt::new(numbers[2], 50.0).unwrap().into(), numbers);
+    let found = Case { pose: linear, numbers: numbers.clone() }.differentiate(1e-10);
+    assert!(
+        matches!(found.derivatives[0], Err(NoDerivative::Rests { contact: 0, time_s }) if time_s > 0.0),
+        "{:?}",
+        found.derivatives
+    );
+    assert!(found.derivatives[1..].iter().all(Result::is_ok), "{:?}", found.derivatives);
+    // the force of Hertz's law is zero to first order on both sides
+    let hertz: Pose = |numbers| resting(Hertz::new(numbers[2]).unwrap().into(), numbers);
+    let found = Case { pose: hertz, numbers }.differentiate(1e-10);
+    assert!(found.derivatives.iter().all(Result::is_ok), "{:?}", found.derivatives);
+}
+
 /// With another gap between them they may touch later, or press on each other immediately.
 #[test]
 fn balls_that_touch_without_speed_have_no_derivative_by_their_gap() {

@@ -15,6 +15,13 @@ pub enum NoDerivative {
         /// When (s).
         time_s: f64,
     },
+    /// The surfaces of a contact rest against each other without force, and after a change they press on each other or separate.
+    Rests {
+        /// The contact, by its place in the list.
+        contact: usize,
+        /// Until when at least (s).
+        time_s: f64,
+    },
     /// A contact whose force jumps at first touch begins at the same time as another, and after a change at another time.
     Together {
         /// The contact, by its place in the list.
@@ -46,6 +53,9 @@ impl fmt::Display for NoDerivative {
             NoDerivative::Outcome => f.write_str("the run stopped early, or the impact did not end with a rebound"),
             NoDerivative::Graze { contact, time_s } => {
                 write!(f, "contact {contact} touches without speed at {time_s} s")
+            }
+            NoDerivative::Rests { contact, time_s } => {
+                write!(f, "contact {contact} touches without speed and without force until {time_s} s")
             }
             NoDerivative::Together { contact, time_s } => {
                 write!(f, "contact {contact} begins with a jump of its force beside another at {time_s} s")

@@ -24,6 +24,13 @@ impl Refusal {
             NoDerivative::Graze { contact, time_s } => {
                 (format!("{} touches without speed at {} s", name(contact), seconds(time_s)), CONTACTS)
             }
+            NoDerivative::Rests { contact, time_s } => {
+                let (contact, time) = (name(contact), seconds(time_s));
+                (
+                    format!("{contact} touches without speed and without force until {time} s"),
+                    "one in which the surfaces of every contact press on each other or are apart",
+                )
+            }
             NoDerivative::Together { contact, time_s } => {
                 (format!("{} begins with a jump beside another at {} s", name(contact), seconds(time_s)), CONTACTS)
             }

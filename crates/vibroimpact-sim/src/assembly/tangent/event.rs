@@ -1,7 +1,8 @@
 //! Derivatives of an event: of its time, and of the law's transition.
 
 use super::walk::{
-    IntervalChange, LAW_STEP, Moved, NUMBERS, Numbers, Tangent, Walk, internal, numbers, shifted, size_of, sum,
+    Followed, IntervalChange, LAW_STEP, Moved, NUMBERS, Numbers, Tangent, Walk, internal, numbers, shifted, size_of,
+    sum,
 };
 use crate::assembly::dense::Event;
 use crate::assembly::no_derivative::NoDerivative;
@@ -47,6 +48,25 @@ impl Walk<'_> {
         self.tangents[d].contacts[c].reference.abs() + self.system.links[c].size(change) + by_loads.abs() + by_shapes
     }
 
+    /// Whether a change of an overlap is more than none.
+    pub fn moves(&self, d: usize, c: usize, time_s: f64, change: f64, [amplitude, moved]: [&[f64]; 2]) -> bool {
+        change.abs() > UNCHANGED * self.parts(d, c, time_s, amplitude, moved)
+    }
+
+    /// The contacts that touch without speed and without force, although the law has a force of first order in the overlap: it pushes
+    /// to one side and does not pull to the other.
+    pub fn resting(&self, overlaps: &[[f64; 2]]) -> Vec<usize> {
+        let rests = |c: &usize| {
+            let Followed { branch, memory, .. } = &self.contacts[*c];
+            let law = self.posed.laws[*c];
+            let branch = branch.unwrap_or_else(|| law.touch(memory, 0.0));
+            let force = law.force(&branch, memory.touch_m, 0.0);
+            let grows = force.per_compression_n_m != 0.0 || force.per_rate_n_s_m != 0.0;
+            overlaps[*c] == [memory.touch_m, 0.0] && force.force_n == 0.0 && grows
+        };
+        (0..overlaps.len()).filter(rests).collect()
+    }
+
     /// Shift of an event at the end of a panel of unchanged length, and the rate of its function.
     pub fn shift(
         &self,
@@ -60,8 +80,8 @@ impl Walk<'_> {
         let change = self.overlap(d, contact, time_s, state, moved);
         // bodies that rest against each other from the start do so after any change that leaves their distance as it is
         if time_s == 0.0 && speed[0] == 0.0 && matches!(event, Event::Touch { .. }) {
-            let stays = change[0].abs() <= UNCHANGED * self.parts(d, contact, time_s, state[0], moved[0]);
-            return if stays { Ok((0.0, 0.0)) } else { Err(NoDerivative::Graze { contact, time_s }) };
+            let moves = self.moves(d, contact, time_s, change[0], [state[0], moved[0]]);
+            return if !moves { Ok((0.0, 0.0)) } else { Err(NoDerivative::Graze { contact, time_s }) };
         }
         let found = self.event_function(d, contact, event, overlap, change, speed);
         let (changes, slope) = found.ok_or(NoDerivative::Fork { contact, time_s })?;

@@ -237,6 +237,7 @@ impl Walk<'_> {
             followed.sizes[1] = followed.sizes[1].max(rate.abs());
         }
         let peaks = self.peaks(solved);
+        let resting = if h > 0.0 { self.resting(&overlaps) } else { Vec::new() };
         for (d, moved) in moved.iter_mut().enumerate() {
             let mut longer = 0.0;
             if let Some(slide) = slide {
@@ -276,6 +277,12 @@ impl Walk<'_> {
                 if let Some((place, slope)) = by_compression {
                     let end = if place == 1.0 { longer * slope / h } else { 0.0 };
                     interval.peak_compression_m = overlap.at(place) + end;
+                }
+            }
+            for &c in &resting {
+                let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate])[0];
+                if self.moves(d, c, time_s, change, [state[0], &moved.amplitude]) {
+                    self.or_refuse(d, Err::<(), _>(NoDerivative::Rests { contact: c, time_s }));
                 }
             }
             let tangent = &mut self.tangents[d];
