@@ -132,10 +132,9 @@ impl Rung {
         self.solution.sub_impacts.len() > 1
     }
 
-    /// Whether it reached a limit of steps or contacts, which the impact with fewer modes may not reach.
+    /// Whether it reached the limit of steps, which the impact with fewer modes may not reach.
     fn takes_too_many_steps(&self) -> bool {
-        use StopReason::{Flight, Steps, SubImpacts};
-        matches!(self.solution.outcome, Outcome::Stopped(Steps | Flight | SubImpacts))
+        matches!(self.solution.outcome, Outcome::Stopped(StopReason::Steps))
     }
 }
 
