@@ -6,11 +6,8 @@ use super::solution::{Interval, Statistics};
 use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, dot, work_of_unit_forces};
 use crate::panel::peak::Peak;
+use crate::panel::root::{EXACTLY, root};
 use contact_models::{Boundary, Branch, Memory};
-
-/// Halvings of a part of a panel that find where the rate of an overlap is zero: the work between is then known to 1e-12 of that of the
-/// part, because it grows with the square of the distance.
-const HALVINGS: usize = 20;
 
 /// A contact at a moment.
 #[derive(Debug, Clone)]
@@ -194,15 +191,11 @@ fn compression_work(solved: &Collocated, force: &Legendre, rate: &Nodal, ends: [
     let (mut work, mut from, mut before) = (0.0, 0.0, (0.0, ends[0]));
     for next in places {
         if (before.1 > 0.0) != (next.1 > 0.0) {
-            let (mut low, mut high) = (before.0, next.0);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                *(if (rates.at(middle) > 0.0) == (before.1 > 0.0) { &mut low } else { &mut high }) = middle;
-            }
+            let turns = root(before.0, next.0, EXACTLY, |place| rates.at(place)).clamp(before.0, next.0);
             if before.1 > 0.0 {
-                work += between(from, low);
+                work += between(from, turns);
             }
-            from = low;
+            from = turns;
         }
         before = next;
     }

@@ -31,7 +31,7 @@ impl Step {
         self.largest.max(self.ends.maximum(&self.ends.quotient(&self.nodal)).1)
     }
 
-    /// Whether it is higher inside than towards the highest step, at its end or at its start.
+    /// Whether its values fall towards the highest step, which adjoins its end or its start. Its maximum then lies inside it.
     fn turns(&self, at_end: bool) -> bool {
         let [at_start, at_the_end] = Legendre::through(&self.nodal).slopes_at_ends();
         !self.ends.is_smooth() || if at_end { at_the_end < 0.0 } else { at_start > 0.0 }
@@ -57,11 +57,12 @@ impl Peak {
     }
 
     pub fn value(&self) -> f64 {
-        let least = CLOSE * self.highest.largest;
-        let may_be_higher = |step: &Step, at_end| step.largest >= least && step.turns(at_end);
-        let beside = [(Some(self.before), true), (self.after, false)];
-        let turning = beside.into_iter().filter_map(|(step, at_end)| step.filter(|step| may_be_higher(step, at_end)));
-        turning.map(|step| step.maximum()).fold(self.highest.maximum(), f64::max)
+        let beside = |step: &Step, at_end| {
+            let may_be_higher = step.largest >= CLOSE * self.highest.largest && step.turns(at_end);
+            if may_be_higher { step.maximum() } else { 0.0 }
+        };
+        let after = self.after.map_or(0.0, |step| beside(&step, false));
+        self.highest.maximum().max(beside(&self.before, true)).max(after)
     }
 }
 
