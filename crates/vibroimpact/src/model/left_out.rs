@@ -36,6 +36,7 @@
 use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
+use crate::impact::Impact;
 use crate::scene::compliance;
 
 /// The uncertainty from truncated modes in terms of the larger of two changes, weighted below, and of the energy of the
@@ -138,15 +139,16 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
-/// The estimate from the energy of the remainder modes, the last modes of a structure, after the impact.
-pub(super) fn energy_of_remainder(structure: &Structure, remainder: usize, after: &Solution, striker: &Striker) -> f64 {
-    let from = structure.modes.len() - remainder;
+/// The estimate from the energy of the remainder modes, the last modes of a structure, after the impact: `e_r` with `R >= 1`.
+pub(super) fn energy_of_remainder(impact: &Impact, after: &Solution) -> f64 {
+    let Impact { structure, remainder_modes, striker, law, .. } = impact;
+    let from = structure.modes.len() - remainder_modes;
     // in units of the striker's speed, so that no square overflows or underflows
     let unit = striker.speed_m_s * striker.mass_kg.sqrt();
     let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
     let energy: f64 =
         motion.map(|((mode, a), rate)| (mode.omega_rad_s * a / unit).powi(2) + (rate / unit).powi(2)).sum();
-    if energy.is_finite() { OF_ENERGY * energy } else { 0.0 }
+    if energy.is_finite() { OF_ENERGY * energy * taken_by_dashpot(law, striker) } else { 0.0 }
 }
 
 /// The structure with a single mode in place of its remainder modes, with the same first two moments

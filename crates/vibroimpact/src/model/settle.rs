@@ -13,7 +13,8 @@
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
 //! with every further number: its errors are part of the differences, and restitutions agree when both have become small.
 //!
-//! More modes take more and shorter steps. Where an impact reaches the limit of its steps, the modes before, or fewer, are the last ones.
+//! More modes take more and shorter steps. If an impact reaches the limit of steps, the answer comes from the number of modes before, or
+//! from fewer modes if there was none before.
 //!
 //! Only a difference between two *different* numbers of modes contains information about the truncated modes. At the end of a
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
@@ -25,8 +26,7 @@ use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, energy_of_remainder, still_growing, taken_by_dashpot, too_short, with_one_remainder_mode,
-    with_softer_remainder,
+    Change, at_the_end, energy_of_remainder, still_growing, too_short, with_one_remainder_mode, with_softer_remainder,
 };
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
@@ -100,9 +100,7 @@ impl Rung {
         let (solution, recording) = solve(pose, &impact, cost)?;
         let Impact { structure, .. } = &impact;
         let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
-        let energy = energy_of_remainder(structure, remainder_modes, &solution, &pose.striker)
-            * too_short(resolution)
-            * taken_by_dashpot(&pose.law, &pose.striker);
+        let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
         Ok(Rung { count, impact, solution, recording, resolution, energy, tail: None })
     }
 

@@ -25,7 +25,7 @@ use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
-use super::left_out::{Change, energy_of_remainder, taken_by_dashpot, with_softer_remainder};
+use super::left_out::{Change, energy_of_remainder, with_softer_remainder};
 use super::pose::Pose;
 use super::settle::{Conclusion, LUCK};
 use super::uncertainty::Known;
@@ -129,7 +129,7 @@ impl Compared {
         let change = |other: &Solution| Change::between(other, self.richer.or(solution), momentum_n_s);
         let stated = change(solution).restitution;
         let energy = match &self.richer {
-            Other::Itself => energy_of(impact, solution),
+            Other::Itself => energy_of_remainder(impact, solution),
             Other::Solved(_, energy) => *energy,
         };
         let further = |fewer: &Other| {
@@ -141,12 +141,6 @@ impl Compared {
         let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
         (stated + further + softer).min(1.0)
     }
-}
-
-/// Possible error of the remainder modes, from their energy after the impact.
-fn energy_of(impact: &Impact, solution: &Solution) -> f64 {
-    let Impact { structure, remainder_modes, striker, law, .. } = impact;
-    energy_of_remainder(structure, *remainder_modes, solution, striker) * taken_by_dashpot(law, striker)
 }
 
 /// Solves the impact with more modes; the inner `Err` states why the effect of the truncated modes is not known.
@@ -188,7 +182,7 @@ fn compare(
         }
         let other = Impact { settings, ..posed(&with_modes(scene, count, modes), kept)? };
         let solution = solve(&other, kept, cost)?;
-        let energy = energy_of(&other, &solution);
+        let energy = energy_of_remainder(&other, &solution);
         Ok((Other::Solved(solution, energy), complete(&other)))
     };
     let (richer, nothing_left) = with(more)?;
