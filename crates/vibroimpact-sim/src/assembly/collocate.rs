@@ -6,10 +6,10 @@
 //! each pair of contacts, which is zero if they share no body. The iteration ends when the remaining correction changes the impulse
 //! of no contact by more than a hundredth of the error allowed for a panel.
 //!
-//! The rate is `D xi`, the derivative of the polynomial through the start and the nodes. It misses the last Legendre polynomial of the
-//! force as the acceleration of the rigid modes, which is added. The collocation of a dashpot at a rigid body is then Gauss collocation of
-//! the speed, which is stable for every ratio of the step to the time constant of the dashpot. Without the addition a deviation of the
-//! speed grows as soon as the ratio exceeds 31, in the limit 73 times on each step.
+//! The rate is `D xi`, the derivative of the polynomial through the start and the nodes. It misses a part of the rate of rigid modes,
+//! which is proportional to the last Legendre coefficient of the force. This part is added. The collocation of a dashpot at a rigid body is
+//! then Gauss collocation of the speed, which is stable for every ratio of the step to the time constant of the dashpot. Without the
+//! addition a deviation of the speed grows as soon as the ratio exceeds 31. For large ratios it grows 73 times on each step.
 //!
 //! The rate is computed only if a boundary of the branch or the force depends on it. The force does not depend on the rate if the law
 //! returns a force that is not zero at all nodes, and whose derivative with respect to the rate is.

@@ -15,7 +15,8 @@ pub enum NoDerivative {
         /// When (s).
         time_s: f64,
     },
-    /// The surfaces of a contact rest against each other without force, and after a change they press on each other or separate.
+    /// The surfaces of a contact rest against each other without force. A change to one side presses them together, and one to the other
+    /// side separates them.
     Rests {
         /// The contact, by its place in the list.
         contact: usize,

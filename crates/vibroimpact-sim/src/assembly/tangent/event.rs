@@ -53,8 +53,8 @@ impl Walk<'_> {
         change.abs() > UNCHANGED * self.parts(d, c, time_s, amplitude, moved)
     }
 
-    /// The contacts that touch without speed and without force, although the law has a force of first order in the overlap: it pushes
-    /// to one side and does not pull to the other.
+    /// The contacts that touch without speed and without force, and whose law has a force of first order in the overlap or its rate. Such
+    /// a force pushes surfaces that overlap, and does not pull those that are apart, so that the derivatives to both sides differ.
     pub fn resting(&self, overlaps: &[[f64; 2]]) -> Vec<usize> {
         let rests = |c: &usize| {
             let Followed { branch, memory, .. } = &self.contacts[*c];
