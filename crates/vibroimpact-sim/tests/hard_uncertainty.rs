@@ -7,7 +7,7 @@ use crate::common::random::{
 };
 use crate::common::{hertz, pinned, pinned_with_remainder, runge_kutta, seen_from, settings};
 use beam_modes::{Beam, End, Segment};
-use contact_models::{KelvinVoigt, Law, LinearSpring, Viscous};
+use contact_models::{Law, LinearSpring, Viscous};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
@@ -30,6 +30,8 @@ fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
 struct Coverage {
     /// Error over stated uncertainty, of each case.
     ratios: Vec<f64>,
+    /// Stated uncertainty over error, where an error below a thousandth of the tolerance counts as so much.
+    widths: Vec<f64>,
     /// What the largest belongs to.
     worst: (f64, String),
     /// Steps of all solutions, with those of their uncertainties.
@@ -69,8 +71,9 @@ impl Coverage {
     }
 
     /// Half of the stated uncertainties are less than so many times the error.
-    fn assert_not_wider(&self, name: &str, times: f64) {
-        let median = self.ratios[self.ratios.len() / 2].recip();
+    fn assert_not_wider(&mut self, name: &str, times: f64) {
+        self.widths.sort_by(f64::total_cmp);
+        let median = self.widths[self.widths.len() / 2];
         assert!(median < times, "{name}: {median}");
     }
 }
@@ -102,14 +105,16 @@ fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
                 continue;
             };
             let beyond = ((restitution - reference).abs() - rest).max(0.0);
-            coverage.note(beyond, solution.restitution_uncertainty.unwrap(), || format!("{tolerance:e} {impact:?}"));
+            let stated = solution.restitution_uncertainty.unwrap();
+            coverage.note(beyond, stated, || format!("{tolerance:e} {impact:?}"));
+            coverage.widths.push(stated / beyond.max(1e-3 * tolerance));
             coverage.steps += solution.counts.steps();
         }
     }
     assert!(100 * known >= 95 * impacts.len(), "{name}: {known} of {}", impacts.len());
     let names = tolerances.map(|tolerance| format!("{name} at {tolerance:e}"));
     names.iter().zip(&mut coverages).for_each(|(name, coverage)| coverage.print(name));
-    for (name, coverage) in names.iter().zip(&coverages) {
+    for (name, coverage) in names.iter().zip(&mut coverages) {
         coverage.assert(name, 95 * known / 100);
         coverage.assert_not_wider(name, median);
     }
@@ -122,27 +127,25 @@ fn ordinary_impacts() {
         EdgeImpact { structure, striker, law, start: None }
     };
     let impacts: Vec<EdgeImpact> = draw(ordinary_impact(), 150).into_iter().map(as_edge).collect();
-    modal_restitution("ordinary", &impacts, 250.0);
+    modal_restitution("ordinary", &impacts, 40.0);
 }
 
 #[test]
 fn impacts_from_the_edges() {
-    modal_restitution("edges", &draw(edge_impact(), 100), 250.0);
+    modal_restitution("edges", &draw(edge_impact(), 100), 40.0);
 }
 
-/// A ball on a beam whose restitution changes by less than 2e-13 if its tolerance is a little coarser, since all of its contacts
-/// then have the same steps, and by 3e-12 in another unit of time, by accident. Its error is 2e-10.
+/// A ball on a beam whose coarser solutions differ from it by 14 % of its error at most, by accident.
 #[test]
-fn steps_that_agree_do_not_make_an_answer_certain() {
-    let structure = pinned_with_remainder(3, 0.0023504225284975717, 0.48299437723430444);
-    let striker = Striker { mass_kg: 0.26168664329662267, speed_m_s: 5.774084727775018 };
-    let law = KelvinVoigt::new(47453647.13321301, 594.7797935165977).unwrap();
+fn solutions_that_agree_do_not_make_an_answer_certain() {
+    let structure = pinned_with_remainder(4, 0.0018795497934074362, 0.150195659069041);
+    let striker = Striker { mass_kg: 0.23157432202639694, speed_m_s: 0.12129654511513636 };
     let solver = Solver::new(&structure).unwrap();
     let [truth, found] =
-        [1e-13, 1e-9].map(|tolerance| solver.solve(&striker, &law, None, &settings(tolerance)).unwrap());
+        [1e-13, 1e-9].map(|tolerance| solver.solve(&striker, &hertz(), None, &settings(tolerance)).unwrap());
     let error = (found.restitution.unwrap() - truth.restitution.unwrap()).abs();
     let stated = found.restitution_uncertainty.unwrap();
-    assert!(error > 1e-10 && truth.restitution_uncertainty.unwrap() < 0.1 * error, "{error:e} {truth:?}");
+    assert!(error > 1e-12 && truth.restitution_uncertainty.unwrap() < 0.1 * error, "{error:e} {truth:?}");
     assert!(error <= stated && stated < 100.0 * error, "{error:e}, stated {stated:e}");
 }
 

@@ -2,21 +2,17 @@
 //!
 //! On a panel the force of each closed contact acts as a polynomial, whose values at the nodes are `T F`. `T` is one unless the force
 //! begins or ends as `t^(3/2)` (`panel/ends.rs`). At each node the law must hold, `F = law(xi, xi')` with
-//! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses. Newton's matrix `1 - F_xi R T - F_rate D R T` has a block for
-//! each pair of contacts, which is zero if they share no body. The iteration ends when the remaining correction changes the impulse
-//! of no contact by more than a hundredth of the error allowed for a panel.
+//! `xi_c = xi_c,free + sum_c' R_cc' T_c' F_c'`, `R` the exact responses, and the same for `xi'` with their rates `V`. Newton's matrix
+//! `1 - F_xi R T - F_rate V T` has a block for each pair of contacts, which is zero if they share no body. The iteration ends when the
+//! remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
 //!
-//! The rate is `D xi`, the derivative of the polynomial through the start and the nodes. It misses a part of the rate of rigid modes,
-//! which is proportional to the last Legendre coefficient of the force. This part is added. The collocation of a dashpot at a rigid body is
-//! then Gauss collocation of the speed, which is stable for every ratio of the step to the time constant of the dashpot. Without the
-//! addition a deviation of the speed grows as soon as the ratio exceeds 31. For large ratios it grows 73 times on each step.
-//!
-//! The rate is computed only if a boundary of the branch or the force depends on it. The force does not depend on the rate if the law
-//! returns a force that is not zero at all nodes, and whose derivative with respect to the rate is.
+//! Rates are computed only where the force depends on them. They are exact, since the derivative of the polynomial through the start and
+//! the nodes would misrepresent vibrations that turn far on the panel, and misses a part of the rate of a rigid body, by which a deviation
+//! of the speed grows as soon as the panel is longer than 31 time constants of a dashpot.
 
 use super::solution::Counts;
 use crate::panel::ends::Ends;
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, apply, slopes};
+use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, apply};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 
@@ -36,9 +32,8 @@ pub(crate) struct Unknown<'a> {
     /// Its increase from the start to the nodes without contact forces (m). The value at the start is excluded, since slopes would
     /// magnify its rounding on short panels.
     pub free: Nodal,
-    /// Whether a boundary of the branch depends on the rate, and whether the force may depend on it.
-    pub ends_by_rate: bool,
-    pub force_by_rate: bool,
+    /// Rate there without contact forces (m/s), if the force may depend on it.
+    pub free_rate: Option<Nodal>,
     /// Requested accuracy of the force (N).
     pub accuracy: f64,
     /// A first guess of the force at the nodes (N).
@@ -52,16 +47,8 @@ pub(crate) struct Unknown<'a> {
 pub(crate) struct Mobility<'r> {
     /// Change of the overlap at the nodes by the force there (m/N).
     pub nodes: &'r Matrix,
-    /// Inverse mass of the rigid modes that both contacts move (1/kg).
-    pub rigid: f64,
-}
-
-impl Mobility<'_> {
-    /// What the polynomial through start and nodes misses of the rates at the nodes under this force (m/s).
-    #[inline(always)]
-    pub fn missed(&self, acting: &Nodal, h: f64) -> Nodal {
-        apply(&BASIS.slope_missed, acting).map(|missed| -self.rigid * h * missed)
-    }
+    /// Change of its rate (m/(N s)), if the force of the moved contact may depend on it.
+    pub rates: Option<&'r Matrix>,
 }
 
 /// Force (N), compression (m) and its rate (m/s; zero unless needed) at the nodes.
@@ -73,8 +60,6 @@ pub(crate) struct Collocated {
     pub acting: Nodal,
     pub compression: Nodal,
     pub rate: Nodal,
-    /// Whether the force may depend on the rate: not if the law has returned a force without derivative with respect to the rate.
-    pub force_by_rate: bool,
 }
 
 impl Collocated {
@@ -97,13 +82,12 @@ pub(crate) struct Newton {
 pub(crate) fn collocate<'r>(
     unknowns: &[Unknown],
     response: impl Fn(usize, usize) -> Option<Mobility<'r>>,
-    h: f64,
     (newton, found): (&mut Newton, &mut Vec<Collocated>),
     counts: &mut Counts,
 ) -> bool {
     vectorized(
         #[inline(always)]
-        || newton.solve(unknowns, &response, h, found, counts),
+        || newton.solve(unknowns, &response, found, counts),
     )
 }
 
@@ -113,7 +97,6 @@ impl Newton {
         &mut self,
         unknowns: &[Unknown],
         response: &impl Fn(usize, usize) -> Option<Mobility<'r>>,
-        h: f64,
         found: &mut Vec<Collocated>,
         counts: &mut Counts,
     ) -> bool {
@@ -125,7 +108,6 @@ impl Newton {
             acting: unknown.ends.acting(&unknown.guess),
             compression: [0.0; Q],
             rate: [0.0; Q],
-            force_by_rate: unknown.force_by_rate,
         };
         found.clear();
         found.extend(unknowns.iter().map(start));
@@ -133,22 +115,18 @@ impl Newton {
         change.resize(n, [0.0; Q]);
         let mut factored = false;
         let mut last: Option<f64> = None;
-        follow(unknowns, response, h, found);
+        follow(unknowns, response, found);
         for _ in 0..ITERATIONS_MAX {
             counts.newton_iterations += 1;
             for (c, unknown) in unknowns.iter().enumerate() {
                 unknown.law.forces(&unknown.branch, &found[c].compression, &found[c].rate, &mut values[c]);
                 counts.law_evaluations += Q as u64;
-                if found[c].force_by_rate {
-                    let tells = |value: &Force| value.per_rate_n_s_m != 0.0;
-                    found[c].force_by_rate = values[c].iter().any(tells) || values[c].iter().all(|v| v.force_n == 0.0);
-                }
                 for i in 0..Q {
                     change[c][i] = values[c][i].force_n - found[c].force[i];
                 }
             }
             if !factored {
-                blocks.factor_stiff(values, unknowns, response, h);
+                blocks.factor_stiff(values, unknowns, response);
                 factored = true;
             }
             blocks.solve_here(change);
@@ -169,7 +147,7 @@ impl Newton {
                 converged &= largest <= 1e-15 * size;
                 excess = excess.max(largest / unknown.accuracy);
             }
-            follow(unknowns, response, h, found);
+            follow(unknowns, response, found);
             // with a constant matrix the changes shrink by a constant ratio, from which the remaining correction follows
             let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
             if converged || ratio * excess <= 1.0 {
@@ -189,30 +167,25 @@ impl Newton {
 fn follow<'r>(
     unknowns: &[Unknown],
     response: &impl Fn(usize, usize) -> Option<Mobility<'r>>,
-    h: f64,
     found: &mut [Collocated],
 ) {
     for (c, unknown) in unknowns.iter().enumerate() {
-        let by_rate = unknown.ends_by_rate || found[c].force_by_rate;
-        let (mut moved, mut missed) = (unknown.free, [0.0; Q]);
+        let (mut moved, mut rate) = (unknown.free, unknown.free_rate.unwrap_or_default());
         for (other, solved) in found.iter().enumerate() {
             if let Some(response) = response(c, other) {
                 let forced = apply(response.nodes, &solved.acting);
                 for i in 0..Q {
                     moved[i] += forced[i];
                 }
-                if by_rate {
-                    let by_force = response.missed(&solved.acting, h);
+                if let Some(rates) = response.rates {
+                    let forced = apply(rates, &solved.acting);
                     for i in 0..Q {
-                        missed[i] += by_force[i];
+                        rate[i] += forced[i];
                     }
                 }
             }
         }
-        if by_rate {
-            let slopes = slopes(0.0, &moved, h);
-            found[c].rate = std::array::from_fn(|i| slopes[i] + missed[i]);
-        }
+        found[c].rate = rate;
         found[c].compression = moved.map(|moved| unknown.start + moved);
     }
 }
@@ -234,11 +207,10 @@ impl Blocks {
         values: &[[Force; Q]],
         ends: impl Fn(usize) -> Ends,
         response: &impl Fn(usize, usize) -> Option<Mobility<'r>>,
-        h: f64,
     ) {
         vectorized(
             #[inline(always)]
-            || self.factor_rows(values, ends, response, h, |_| true),
+            || self.factor_rows(values, ends, response, |_| true),
         );
     }
 
@@ -258,7 +230,6 @@ impl Blocks {
         values: &[[Force; Q]],
         unknowns: &[Unknown],
         response: &impl Fn(usize, usize) -> Option<Mobility<'r>>,
-        h: f64,
     ) {
         let stiff = |p: usize| {
             let by_rate = values[p].iter().any(|value| value.per_rate_n_s_m != 0.0);
@@ -266,7 +237,7 @@ impl Blocks {
             let moved = |own: &Matrix| own.iter().flatten().fold(0.0f64, |most, moved| most.max(moved.abs()));
             values.len() == 1 || by_rate || response(p, p).is_some_and(|own| stiffness * moved(own.nodes) > SOFT)
         };
-        self.factor_rows(values, |c| unknowns[c].ends, response, h, stiff);
+        self.factor_rows(values, |c| unknowns[c].ends, response, stiff);
     }
 
     #[inline(always)]
@@ -275,7 +246,6 @@ impl Blocks {
         values: &[[Force; Q]],
         ends: impl Fn(usize) -> Ends,
         response: &impl Fn(usize, usize) -> Option<Mobility<'r>>,
-        h: f64,
         wanted: impl Fn(usize) -> bool,
     ) {
         let n = values.len();
@@ -287,7 +257,7 @@ impl Blocks {
         for p in (0..n).filter(|p| wanted(*p)) {
             for q in 0..n {
                 if let Some(response) = response(p, q) {
-                    fill(&mut blocks[p * n + q], &values[p], response, ends(q), h);
+                    fill(&mut blocks[p * n + q], &values[p], response, ends(q));
                     if p == q {
                         (0..Q).for_each(|j| blocks[p * n + q][j][j] += 1.0);
                     }
@@ -360,9 +330,9 @@ impl Blocks {
     }
 }
 
-/// `-F_xi R T - F_rate D R T` of one pair, with what `D` misses.
+/// `-F_xi R T - F_rate V T` of one pair.
 #[inline(always)]
-fn fill(block: &mut Matrix, values: &[Force; Q], response: Mobility, ends: Ends, h: f64) {
+fn fill(block: &mut Matrix, values: &[Force; Q], response: Mobility, ends: Ends) {
     let acting = |response: &Matrix| if ends.is_smooth() { *response } else { ends.response(response) };
     let moved = acting(response.nodes);
     for j in 0..Q {
@@ -370,12 +340,11 @@ fn fill(block: &mut Matrix, values: &[Force; Q], response: Mobility, ends: Ends,
             block[j][i] = -values[i].per_compression_n_m * moved[j][i];
         }
     }
-    if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
-        let missed = acting(&BASIS.slope_missed);
+    if let Some(rates) = response.rates {
+        let rates = acting(rates);
         for j in 0..Q {
-            let slopes = apply(&BASIS.slope_from_nodes, &moved[j]);
             for i in 0..Q {
-                block[j][i] -= values[i].per_rate_n_s_m * (slopes[i] / h - response.rigid * h * missed[j][i]);
+                block[j][i] -= values[i].per_rate_n_s_m * rates[j][i];
             }
         }
     }
@@ -419,6 +388,7 @@ fn exchange<const PIVOT: usize>(a: &mut Matrix) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel::legendre::BASIS;
     use contact_models::LinearSpring;
 
     /// Linear springs: the collocation equations are linear, and solved in one iteration to rounding.
@@ -431,8 +401,8 @@ mod tests {
         // a chain: the outer two share no body
         let (own, near) = (matrix(0.1), matrix(-0.04));
         let response = |p: usize, q: usize| match p.abs_diff(q) {
-            0 => Some(Mobility { nodes: &own, rigid: 0.0 }),
-            1 => Some(Mobility { nodes: &near, rigid: 0.0 }),
+            0 => Some(Mobility { nodes: &own, rates: None }),
+            1 => Some(Mobility { nodes: &near, rates: None }),
             _ => None,
         };
         let unknown = |c: usize| Unknown {
@@ -440,15 +410,14 @@ mod tests {
             branch: contact_models::ContactLaw::touch(&law, &Default::default(), 1.0),
             start: 0.0,
             free: BASIS.nodes.map(|s| s * (1.0 + c as f64)),
-            ends_by_rate: false,
-            force_by_rate: true,
+            free_rate: None,
             accuracy: 1e-15,
             guess: [0.0; Q],
             ends: Ends::SMOOTH,
         };
         let unknowns: Vec<_> = (0..3).map(unknown).collect();
         let (mut newton, mut found) = (Newton::default(), Vec::new());
-        assert!(collocate(&unknowns, response, 0.5, (&mut newton, &mut found), &mut Counts::default()));
+        assert!(collocate(&unknowns, response, (&mut newton, &mut found), &mut Counts::default()));
         for c in 0..3 {
             let mut compression = unknowns[c].free;
             for other in 0..3 {

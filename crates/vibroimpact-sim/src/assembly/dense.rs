@@ -40,12 +40,14 @@ pub(crate) struct Stretch {
     pub forces: Vec<Acting>,
 }
 
-/// The force of a closed contact on a stretch: the polynomial that moves the modes, and how the force begins and ends.
+/// The force of a closed contact on a stretch: the polynomial that moves the modes, how the force begins and ends, and whether it may
+/// depend on the rate of compression.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Acting {
     pub contact: usize,
     pub force: Legendre,
     pub ends: Ends,
+    pub by_rate: bool,
 }
 
 /// A stretch with the data that its evaluation needs.

@@ -1,22 +1,21 @@
 //! Checks a solved panel: does an event function of one of its contacts fall to zero, and is the panel short enough for this
 //! decision?
 
-use super::collocate::Collocated;
 use super::enclosure::{Pull, of_panel};
 use super::event::{Beginning, EventFunction, Verdict};
 use super::interpolation::ORDERS;
 use super::motion::{MAGNIFIED, March, Target};
 use super::state::Touch;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR};
+use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR, slopes};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
 const TAIL: f64 = 10.0;
 
 /// Under the last Legendre polynomial as the acceleration an overlap is of the ninth degree. The polynomial through start and nodes
-/// then misses `s P_8(2s - 1)/270` (panel length 1), and the rates at the nodes its slope there, `s P_8'(2s - 1)/135`. These are bounds
-/// on both, and on what the second does to the quotient of an event function that depends on the rate. Other quotients are of at most
-/// the eighth degree.
+/// then misses `s P_8(2s - 1)/270` (panel length 1), and its rates at the nodes the slope of this there, `s P_8'(2s - 1)/135`. These are
+/// bounds on both, and on what the second does to the quotient of an event function that depends on the rate. Other quotients are of at
+/// most the eighth degree.
 const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 
 /// Result of testing the event functions of a panel.
@@ -34,7 +33,7 @@ impl<'a> March<'a> {
         h: f64,
         contacts: &[usize],
         closed: usize,
-        (solved, force): (&[Collocated], &[Legendre]),
+        force: &[Legendre],
         overlap: &[Nodal],
         enclosed: bool,
     ) -> Judgement {
@@ -98,7 +97,8 @@ impl<'a> March<'a> {
             };
             match state.touch() {
                 Some(touch) => {
-                    let rates = if touch.ends_by_rate { solved[i].rate } else { [0.0; Q] };
+                    let moved = || overlap[i].map(|overlap| overlap - state.overlap);
+                    let rates = if touch.ends_by_rate { slopes(0.0, &moved(), h) } else { [0.0; Q] };
                     for (which, boundary) in state.ends.iter().enumerate() {
                         let nodal = std::array::from_fn(|n| boundary.margin(overlap[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
@@ -176,7 +176,7 @@ impl<'a> March<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::legendre::{BASIS, slopes};
+    use crate::panel::legendre::BASIS;
 
     /// The overlap under the last Legendre polynomial as the acceleration, integrated twice by the differential equation of these
     /// polynomials, is `s^2 (1 - s)^2` times the slope of the slope of `P_7`, over `7 8 (7 8 - 2)`.

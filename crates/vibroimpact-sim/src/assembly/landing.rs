@@ -249,9 +249,11 @@ impl<'a> March<'a> {
         window.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
     }
 
-    /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried.
+    /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried, with its rate where
+    /// there is one.
     fn unknowns_of(&self, window: &Window, length: f64, ends: impl Fn(usize) -> Ends) -> Vec<Unknown<'a>> {
-        self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q], ends).collect()
+        let free = |i: usize| ([0.0; Q], self.force_by_rate(window.contacts[i]).then_some([0.0; Q]));
+        self.unknowns(&window.contacts[..window.closed], length, free, ends).collect()
     }
 
     /// How the force of the contact of an event begins and ends on a terminal panel up to it. While other contacts are closed it is
@@ -274,8 +276,7 @@ impl<'a> March<'a> {
 
     /// Tests the event functions of a terminal panel, whose series need no enclosure.
     fn judge_landed(&mut self, window: &Window, landed: &Landed) -> Judgement {
-        let forces = (landed.solved.as_slice(), landed.force.as_slice());
-        self.judge(landed.length, &window.contacts, window.closed, forces, &landed.overlap, false)
+        self.judge(landed.length, &window.contacts, window.closed, &landed.force, &landed.overlap, false)
     }
 
     /// Error of the forces of a terminal panel relative to the allowed error.

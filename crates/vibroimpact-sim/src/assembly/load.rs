@@ -343,14 +343,18 @@ impl Loads {
         lines + self.harmonics.iter().map(of).sum::<f64>()
     }
 
-    /// Derivative of the displacement [`Loads::moved`] within `h` seconds with respect to the time of its start.
-    pub fn moved_later(&self, contact: usize, time_s: f64, h: f64) -> f64 {
-        let mut moved = 0.5 * h * h * self.contacts[contact].jerk;
+    /// Derivative of [`Loads::moved`] within `h` seconds with respect to the time of its start.
+    pub fn moved_later(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
+        let jerk = self.contacts[contact].jerk;
+        let (mut moved, mut rate) = (0.5 * h * h * jerk, h * jerk);
         for harmonic in &self.harmonics {
+            let omega = harmonic.omega_rad_s;
             let now = harmonic.contacts[contact] * harmonic.turn(time_s);
-            moved -= harmonic.omega_rad_s * (now * swept(harmonic.omega_rad_s * h)).im;
+            let swept = now * swept(omega * h);
+            moved -= omega * swept.im;
+            rate -= omega * omega * (now + swept).re;
         }
-        moved
+        (moved, rate)
     }
 
     /// Acceleration of the overlap by the harmonic loads alone (m/s^2).

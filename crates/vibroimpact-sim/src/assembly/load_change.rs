@@ -69,9 +69,10 @@ impl LoadChange {
         [of(|pair| pair.0), of(|pair| pair.1)]
     }
 
-    /// Change of the first number of [`Loads::moved`].
-    pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> f64 {
-        self.slope(|_, loads| loads.moved(contact, time_s, h).0)
+    /// Change of [`Loads::moved`].
+    pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
+        let of = |part: fn((f64, f64)) -> f64| self.slope(|_, loads| part(loads.moved(contact, time_s, h)));
+        (of(|pair| pair.0), of(|pair| pair.1))
     }
 
     /// Change of the piecewise linear force on a rigid mode at `time_s`, and of its slope.

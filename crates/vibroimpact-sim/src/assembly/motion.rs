@@ -20,7 +20,7 @@ use contact_models::{ContactLaw, Memory};
 /// A panel is doubled when its error is this many times below the tolerance.
 pub(super) const GROWTH: f64 = 250.0;
 
-/// Interpolation of a rate from the overlaps at the nodes magnifies their rounding so many times.
+/// Interpolation of a rate from the overlaps at the nodes, as for event functions, magnifies their rounding so many times.
 pub(super) const MAGNIFIED: f64 = 50.0;
 
 /// On a panel an overlap hardly grows by more than this many times what the rate at its start would add.
@@ -252,6 +252,17 @@ impl<'a> March<'a> {
         tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
     }
 
+    /// Rounding of the rate of an overlap anywhere on a panel (m/s): vibrations turn displacement into rate.
+    fn moving_noise(&self, c: usize) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+            let [sum] = sum_over([psi, omega, a, b], |[psi, omega, a, b]| [psi.abs() * (omega * a.abs() + b.abs())]);
+            sum
+        };
+        let moving: f64 = self.system.links[c].spans.iter().map(of).sum();
+        4.0 * f64::EPSILON * moving.max(self.states[c].speed_m_s())
+    }
+
     /// Allowed error of the impulse on a panel (N s): a part of the exchanged momentum, but at most the impulse that would give the
     /// modes, even light ones, this part of the contact's energy.
     pub(super) fn impulse_tolerance(&self, c: usize) -> f64 {
@@ -271,7 +282,7 @@ impl<'a> March<'a> {
             Some(touch) if touch.force_by_rate && error * GROWTH >= 1.0 => {
                 let reached = self.states[c].overlap + FARTHER * h * self.states[c].rate.abs();
                 let drag = self.law(c).force(&touch.branch, overlap.min(reached), rate).per_rate_n_s_m.abs();
-                (force_n * h - MAGNIFIED * drag * self.panel_noise(c, h)).max(0.0) / tolerance
+                (force_n - drag * self.moving_noise(c)).max(0.0) * h / tolerance
             }
             _ => error,
         }

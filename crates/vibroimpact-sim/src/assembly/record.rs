@@ -76,7 +76,14 @@ impl<'a> March<'a> {
             amplitude: self.amplitude.clone(),
             rate: self.rate.clone(),
             contacts: self.states.iter().map(seen).collect(),
-            forces: forces.map(|((&contact, &force), solved)| Acting { contact, force, ends: solved.ends }).collect(),
+            forces: forces
+                .map(|((&contact, &force), solved)| Acting {
+                    contact,
+                    force,
+                    ends: solved.ends,
+                    by_rate: self.force_by_rate(contact),
+                })
+                .collect(),
         }
     }
 

@@ -2,8 +2,10 @@
 //! the elastic modes, which the tables cache, and of those of the rigid modes, which differ from striker to striker.
 
 use super::system::System;
-use super::tables::{Response, Tables};
+use super::tables::{Response, Tables, with_rigid_modes};
 use crate::panel::dyadic::{Levels, step_s};
+use crate::panel::forcing::Order;
+use crate::panel::legendre::Matrix;
 
 /// Filled as they are needed.
 #[derive(Default)]
@@ -15,6 +17,9 @@ struct Level {
     /// `[c][c']`: number of the response, where it was requested.
     pairs: Vec<Option<usize>>,
     found: Vec<Response>,
+    /// The same of their rates at the nodes.
+    pairs_of_rates: Vec<Option<usize>>,
+    rates: Vec<Matrix>,
 }
 
 impl Responses {
@@ -30,9 +35,14 @@ impl Responses {
         }
         tables.prepare(system, j, contacts, forces);
         // most contacts share a body with few others
-        let empty = || Level { pairs: vec![None; count * count], found: Vec::with_capacity(3 * contacts.len()) };
+        let empty = || Level {
+            pairs: vec![None; count * count],
+            found: Vec::with_capacity(3 * contacts.len()),
+            pairs_of_rates: vec![None; count * count],
+            rates: Vec::new(),
+        };
         self.levels.get_or_init(j, empty);
-        let Some(Level { pairs, found }) = self.levels.get_mut(j) else { return };
+        let Some(Level { pairs, found, .. }) = self.levels.get_mut(j) else { return };
         for &c in contacts {
             for &other in of_neighbours(c) {
                 let pair = &mut pairs[c * count + other];
@@ -43,6 +53,33 @@ impl Responses {
                 }
             }
         }
+    }
+
+    /// Computes the rates at the nodes of these contacts under these forces that are not cached yet. Needs [`Responses::prepare`].
+    pub fn prepare_rates(&mut self, system: &System, tables: &Tables, j: i32, contacts: &[usize], forces: &[usize]) {
+        let count = system.links.len();
+        let Some(Level { pairs_of_rates, rates, .. }) = self.levels.get_mut(j) else { return };
+        let of_contact = |&c: &usize| forces.iter().map(move |&other| (c, other));
+        let missing = |(c, other): &(usize, usize)| {
+            system.neighbours[*c].contains(other) && pairs_of_rates[c * count + other].is_none()
+        };
+        let pairs: Vec<(usize, usize)> = contacts.iter().flat_map(of_contact).filter(missing).collect();
+        if pairs.is_empty() {
+            return;
+        }
+        tables.prepare_rates(system, j, &pairs);
+        for (c, other) in pairs {
+            pairs_of_rates[c * count + other] = Some(rates.len());
+            let inverse_mass = system.links[c].shared_rigid(&system.links[other]);
+            let elastic = tables.elastic_rates(j, c, other);
+            rates.push(with_rigid_modes(elastic, Order::Velocity, inverse_mass, step_s(j)));
+        }
+    }
+
+    /// Rates of contact `c` at the nodes under the force of `other`, if they share a body. Needs [`Responses::prepare_rates`].
+    pub fn rates(&self, system: &System, j: i32, c: usize, other: usize) -> Option<&Matrix> {
+        let level = self.levels.get(j)?;
+        level.pairs_of_rates[c * system.links.len() + other].map(|pair| &level.rates[pair])
     }
 
     /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Responses::prepare`].

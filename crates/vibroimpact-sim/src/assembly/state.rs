@@ -49,7 +49,7 @@ pub(crate) struct Touch {
     pub branch: Branch,
     /// Whether a boundary of the branch depends on the rate.
     pub ends_by_rate: bool,
-    /// Whether the force may depend on the rate, from the law's values on this branch so far.
+    /// Whether the force may depend on the rate on this branch.
     pub force_by_rate: bool,
     /// Distance of the overlap (m) and of its rate (m/s), at the transition that led to the branch, from where the event function is
     /// zero; ideally zero.
@@ -120,11 +120,10 @@ impl State {
     /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
     /// compression and rate at the nodes and at the end.
     pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, (end, end_rate): (f64, f64)) {
-        let Collocated { force: nodal, ends, compression, force_by_rate, .. } = solved;
+        let Collocated { force: nodal, ends, compression, .. } = solved;
         let work_j = self.work_j(&force, compression, end);
         let ends_of_rate = [self.rate, end_rate];
         let Phase::Closed(touch) = &mut self.phase else { return };
-        touch.force_by_rate = *force_by_rate;
         touch.begins = false;
         touch.previous = Some((force, h));
         touch.interval.impulse_n_s += h * force.mean();

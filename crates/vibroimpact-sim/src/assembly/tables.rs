@@ -7,7 +7,7 @@ use super::excess::{Excess, OnPanel, Pushed, has_fast_modes};
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{Levels, Rotation, step_s};
-use crate::panel::forcing::{ByParts, Compliance, Way, by_quadrature, by_series};
+use crate::panel::forcing::{ByParts, Compliance, Order, Way, by_quadrature, by_series};
 use crate::panel::legendre::{
     BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, leave_out_infinite, work_of_unit_forces,
 };
@@ -26,8 +26,6 @@ pub(crate) struct Response {
     /// At the end, to Legendre forces (m/N), and its rate (m/(N s)).
     pub end: Nodal,
     pub end_rate: Nodal,
-    /// Inverse mass of the rigid modes in it (1/kg).
-    pub rigid: f64,
 }
 
 /// Free motion and forced responses of all modes on a panel.
@@ -43,8 +41,10 @@ pub(crate) struct Forced {
 /// The same for one step exponent, with the responses of pairs of contacts.
 struct Expanded {
     forced: Forced,
-    /// `[c][c']`, where requested: the response of the elastic modes, for contacts that share some.
+    /// `[c][c']`, where requested: the response of the elastic modes, for contacts that share some, and its rate at the nodes
+    /// (m/(N s)).
     elastic: Vec<OnceLock<Box<Response>>>,
+    elastic_rates: Vec<OnceLock<Box<Matrix>>>,
     /// The modes that are integrated by parts, once responses with other weights are requested.
     by_parts: OnceLock<Vec<ByParts>>,
 }
@@ -120,7 +120,7 @@ impl Tables {
             level.damping = OnceLock::new();
             level.excess = OnceLock::new();
             if let Some(expanded) = level.expanded.get_mut() {
-                expanded.elastic = unset(self.contacts);
+                (expanded.elastic, expanded.elastic_rates) = (unset(self.contacts), unset(self.contacts));
             }
         }
         self.kernels = unset(self.contacts);
@@ -150,13 +150,28 @@ impl Tables {
         let expanded = self.level(j).expanded.get_or_init(|| {
             let (forced, sums) = Forced::new(system, step_s(j), self.rotation(system, j + 1), &weights);
             found = Some(sums);
-            Expanded { forced, elastic: unset(count), by_parts: OnceLock::new() }
+            Expanded { forced, elastic: unset(count), elastic_rates: unset(count), by_parts: OnceLock::new() }
         });
-        let found = found.unwrap_or_else(|| again(system, step_s(j), &weights, &expanded.by_parts));
+        let again = || again(system, step_s(j), (&weights, Order::Displacement), &expanded.by_parts);
+        let found = found.unwrap_or_else(again);
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
             // another thread may have been first; its result is the same
-            let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate, rigid: 0.0 }));
+            let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate }));
+        }
+    }
+
+    /// Computes the rates at the nodes for the step exponent `j` and these pairs of contacts that are not cached yet. Needs
+    /// [`Tables::prepare`].
+    pub fn prepare_rates(&self, system: &System, j: i32, pairs: &[(usize, usize)]) {
+        let Some(expanded) = self.expanded(j) else { return };
+        let rates = |(c, other): (usize, usize)| &expanded.elastic_rates[c * self.contacts + other];
+        let wanted = |pair: &(usize, usize)| system.share_elastic_modes(pair.0, pair.1) && rates(*pair).get().is_none();
+        let pairs: Vec<(usize, usize)> = pairs.iter().copied().filter(wanted).collect();
+        let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
+        let found = again(system, step_s(j), (&weights, Order::Velocity), &expanded.by_parts);
+        for (pair, nodes) in pairs.into_iter().zip(found) {
+            let _ = rates(pair).set(Box::new(nodes));
         }
     }
 
@@ -173,6 +188,26 @@ impl Tables {
     pub fn elastic_response(&self, j: i32, c: usize, other: usize) -> Response {
         let found = self.expanded(j).and_then(|level| level.elastic[c * self.contacts + other].get());
         found.map_or_else(Response::default, |response| **response)
+    }
+
+    /// Rate of the overlap of contact `c` at the nodes by the elastic modes, to nodal forces of `other`. Needs
+    /// [`Tables::prepare_rates`].
+    pub fn elastic_rates(&self, j: i32, c: usize, other: usize) -> Matrix {
+        let found = self.expanded(j).and_then(|level| level.elastic_rates[c * self.contacts + other].get());
+        found.map_or([[0.0; Q]; Q], |rates| **rates)
+    }
+
+    /// [`Tables::free_at_nodes`], and the rate there. Needs [`Tables::prepare`].
+    pub fn free_with_rates(
+        &self,
+        system: &System,
+        j: i32,
+        link: &Link,
+        amplitude: &[f64],
+        rate: &[f64],
+    ) -> (Nodal, Nodal) {
+        self.expanded(j)
+            .map_or(([0.0; Q], [0.0; Q]), |level| level.forced.free_with_rates(system, &link.spans, amplitude, rate))
     }
 
     /// Change of the overlap of a contact by free motion over a panel, and its rate at the end.
@@ -271,7 +306,7 @@ impl Forced {
         let n = system.modes.len();
         let mut forced =
             Forced { at_nodes: vec![([0.0; Q], [0.0; Q]); n], amplitude: Rows::new(n), rate: Rows::new(n) };
-        let mut sums = Sums::new(system, h, weights);
+        let mut sums = Sums::new(system, h, (weights, Order::Displacement));
         for body in &system.bodies {
             let mut terms = 2;
             for (modes, way) in alike(&system.modes, body.clone(), h) {
@@ -352,6 +387,33 @@ impl Forced {
         )
     }
 
+    /// [`Forced::free_at_nodes`], and the rate of the sum there: free motion from a rate and an acceleration.
+    pub fn free_with_rates(&self, system: &System, spans: &[Span], amplitude: &[f64], rate: &[f64]) -> (Nodal, Nodal) {
+        vectorized(
+            #[inline(always)]
+            || {
+                let (mut moved, mut start, mut sped) = ([0.0; Q], 0.0, [0.0; Q]);
+                for Span { modes, psi } in spans {
+                    let n = psi.len();
+                    let [a, b, drag, square] =
+                        [amplitude, rate, &system.drag, &system.square].map(|row| &row[modes.clone()][..n]);
+                    let at_nodes = &self.at_nodes[modes.clone()][..n];
+                    for k in 0..n {
+                        let (a, b) = (psi[k] * a[k], psi[k] * b[k]);
+                        let bend = -drag[k] * b - square[k] * a;
+                        let (from_a, from_b) = &at_nodes[k];
+                        start += b;
+                        for i in 0..Q {
+                            moved[i] += from_a[i] * a + from_b[i] * b;
+                            sped[i] += from_a[i] * b + from_b[i] * bend;
+                        }
+                    }
+                }
+                (moved, sped.map(|sped| start + sped))
+            },
+        )
+    }
+
     /// Adds the effect of a contact force on the modes within a panel.
     pub fn push(&self, spans: &[Span], force: &Legendre, amplitude: &mut [f64], rate: &mut [f64]) {
         vectorized(
@@ -366,9 +428,9 @@ impl Forced {
     }
 }
 
-/// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
-/// [`Forced::new`].
-fn again(system: &System, h: f64, weights: &[Vec<f64>], by_parts: &OnceLock<Vec<ByParts>>) -> Vec<[Nodal; Q]> {
+/// Responses at the nodes summed over the modes with other weights, of a panel of `h` again, or their rates: the responses are to the
+/// last bit those of [`Forced::new`].
+fn again(system: &System, h: f64, sums: (&[Vec<f64>], Order), by_parts: &OnceLock<Vec<ByParts>>) -> Vec<[Nodal; Q]> {
     let groups = || system.bodies.iter().flat_map(|body| alike(&system.modes, body.clone(), h));
     let new = |(modes, _)| {
         vectorized(
@@ -378,7 +440,7 @@ fn again(system: &System, h: f64, weights: &[Vec<f64>], by_parts: &OnceLock<Vec<
     };
     let by_parts = by_parts.get_or_init(|| groups().filter(|(_, way)| *way == Way::ByParts).map(new).collect());
     let mut by_parts = by_parts.iter();
-    let mut sums = Sums::new(system, h, weights);
+    let mut sums = Sums::new(system, h, sums);
     for body in &system.bodies {
         for (modes, way) in alike(&system.modes, body.clone(), h) {
             if way != Way::ByParts {
@@ -415,8 +477,8 @@ struct Sums<'a> {
 }
 
 impl Sums<'_> {
-    fn new<'a>(system: &'a System, h: f64, weights: &'a [Vec<f64>]) -> Sums<'a> {
-        let compliances = weights.iter().map(|_| Compliance::new()).collect();
+    fn new<'a>(system: &'a System, h: f64, (weights, order): (&'a [Vec<f64>], Order)) -> Sums<'a> {
+        let compliances = weights.iter().map(|_| Compliance::new(order)).collect();
         Sums { system, h, weights, compliances, waiting: [0; LANES], count: 0 }
     }
 
@@ -476,11 +538,19 @@ impl Sums<'_> {
     }
 }
 
-/// Responses at the nodes with those of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
-pub(crate) fn with_rigid_modes(mut nodes: [Nodal; Q], inverse_mass: f64, h: f64) -> [Nodal; Q] {
-    let moved = inverse_mass * h * h;
-    for (row, twice) in nodes.iter_mut().zip(&BASIS.power[1]) {
-        row.iter_mut().zip(twice).for_each(|(value, integral)| *value -= moved * integral);
+/// Rates at the nodes summed over the elastic modes with these weights, on a panel of `h`.
+pub(crate) fn rates_at_nodes(system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<Matrix> {
+    again(system, h, (weights, Order::Velocity), &OnceLock::new())
+}
+
+/// Responses at the nodes, or their rates, with those of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
+pub(crate) fn with_rigid_modes(mut nodes: Matrix, order: Order, inverse_mass: f64, h: f64) -> Matrix {
+    let (moved, integrals) = match order {
+        Order::Displacement => (inverse_mass * h * h, &BASIS.power[1]),
+        Order::Velocity => (inverse_mass * h, &BASIS.power[0]),
+    };
+    for (row, integrals) in nodes.iter_mut().zip(integrals) {
+        row.iter_mut().zip(integrals).for_each(|(value, integral)| *value -= moved * integral);
     }
     nodes
 }
@@ -488,14 +558,14 @@ pub(crate) fn with_rigid_modes(mut nodes: [Nodal; Q], inverse_mass: f64, h: f64)
 impl Response {
     /// With that of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
-        let Response { nodes, mut end, mut end_rate, .. } = *self;
-        let nodes = with_rigid_modes(nodes, inverse_mass, h);
+        let Response { nodes, mut end, mut end_rate } = *self;
+        let nodes = with_rigid_modes(nodes, Order::Displacement, inverse_mass, h);
         let moved = inverse_mass * h * h;
         // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on
         end[0] -= moved / 2.0;
         end[1] += moved / 6.0;
         end_rate[0] -= inverse_mass * h;
-        Response { nodes, end, end_rate, rigid: inverse_mass }
+        Response { nodes, end, end_rate }
     }
 
     /// Work of unit Legendre forces of one contact over the motion by those of the other, by quadrature: `[m][n]` of `P_n` over the

@@ -43,8 +43,6 @@ pub(crate) struct Window {
 struct Kernel {
     derivatives: Series,
     powers: usize,
-    /// Inverse mass of the rigid modes that both contacts move (1/kg).
-    rigid: f64,
 }
 
 /// A solved terminal panel.
@@ -104,8 +102,7 @@ impl Window {
         self.free.push(series);
         for other in &self.contacts[..self.closed] {
             let derivatives = tables.kernel(system, c, *other);
-            let rigid = system.links[c].shared_rigid(&system.links[*other]);
-            self.kernels.push(Kernel { derivatives, powers: powers(&derivatives), rigid });
+            self.kernels.push(Kernel { derivatives, powers: powers(&derivatives) });
         }
     }
 
@@ -135,13 +132,21 @@ impl Window {
             let mut moved = *series;
             moved[0] = 0.0;
             unknown.free = values(&moved, length);
+            if let Some(rate) = &mut unknown.free_rate {
+                *rate = values(&slope(series), length);
+            }
         }
+        let of_contact = |(unknown, kernels): (&Unknown, &[Kernel])| -> Vec<Option<Matrix>> {
+            kernels.iter().map(|kernel| unknown.free_rate.and_then(|_| rates(kernel, length))).collect()
+        };
+        let kernels = self.kernels.chunks(self.closed.max(1));
+        let rates: Vec<Option<Matrix>> = unknowns.iter().zip(kernels).flat_map(of_contact).collect();
         let mut solved = Vec::new();
         let response = |c: usize, other: usize| {
             let pair = c * self.closed + other;
-            Some(Mobility { nodes: responses[pair].as_ref()?, rigid: self.kernels[pair].rigid })
+            Some(Mobility { nodes: responses[pair].as_ref()?, rates: rates[pair].as_ref() })
         };
-        if !collocate(unknowns, response, length, (newton, &mut solved), counts) {
+        if !collocate(unknowns, response, (newton, &mut solved), counts) {
             return None;
         }
         Some(self.arrive(length, solved, free, &responses))
@@ -224,7 +229,6 @@ impl Window {
             acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
             compression: carry(&solved.compression),
             rate: carry(&solved.rate),
-            force_by_rate: solved.force_by_rate,
         };
         let solved = from.solved.iter().map(carried).collect();
         self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))
@@ -285,24 +289,38 @@ fn scaled(kernel: &Kernel, length: f64) -> (Series, usize) {
 /// Overlap at the nodes to nodal forces; `None` where there is no response at all.
 fn response(kernel: &Kernel, length: f64) -> Option<Matrix> {
     let (scaled, terms) = scaled(kernel, length);
-    let powers = &BASIS.power;
-    (terms > 0).then(|| {
-        vectorized(
-            #[inline(always)]
-            || {
-                let mut response = [[0.0; Q]; Q];
-                for (kernel, power) in scaled[..terms].iter().zip(powers) {
-                    let factor = kernel * length;
-                    for j in 0..Q {
-                        for i in 0..Q {
-                            response[j][i] -= factor * power[j][i];
-                        }
+    (terms > 0).then(|| summed(&scaled[..terms], length))
+}
+
+/// Its rate.
+fn rates(kernel: &Kernel, length: f64) -> Option<Matrix> {
+    let (scaled, terms) = scaled(kernel, length);
+    // the impulse response begins at zero
+    (terms > 1).then(|| summed(&scaled[1..terms], 1.0))
+}
+
+/// Minus the integrals of powers of the time with these factors, times the nodal forces.
+fn summed(factors: &[f64], scale: f64) -> Matrix {
+    vectorized(
+        #[inline(always)]
+        || {
+            let mut sum = [[0.0; Q]; Q];
+            for (factor, power) in factors.iter().zip(&BASIS.power) {
+                let factor = factor * scale;
+                for j in 0..Q {
+                    for i in 0..Q {
+                        sum[j][i] -= factor * power[j][i];
                     }
                 }
-                response
-            },
-        )
-    })
+            }
+            sum
+        },
+    )
+}
+
+/// The derivative of a series.
+fn slope(series: &Series) -> Series {
+    std::array::from_fn(|p| series.get(p + 1).map_or(0.0, |term| (p + 1) as f64 * term))
 }
 
 /// Adds overlap, rate and acceleration at the end under a force with these moments, whose value at the end is `last`.

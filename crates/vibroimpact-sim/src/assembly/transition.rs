@@ -201,9 +201,11 @@ impl<'a> March<'a> {
         if let Phase::Closed(touch) = phase {
             touch.branch = branch;
             touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
-            // assumed until the first panel shows the opposite
-            touch.force_by_rate = true;
             touch.begins = false;
+        }
+        let by_rate = self.depends_on_rate(c);
+        if let Some(touch) = self.states[c].touch_mut() {
+            touch.force_by_rate = by_rate;
         }
         let mut vanishes = std::mem::take(&mut self.states[c].vanishes);
         vanishes.clear();
@@ -214,6 +216,16 @@ impl<'a> March<'a> {
         }
         self.states[c].vanishes = vanishes;
         self.forget_horizons();
+    }
+
+    /// Whether the force of a closed contact may depend on the rate: it does on its whole branch or nowhere, as one of its values tells
+    /// that is not zero.
+    fn depends_on_rate(&mut self, c: usize) -> bool {
+        let (state, law) = (&self.states[c], self.law(c));
+        let (Some(touch), Some((scale, speed))) = (state.touch(), state.scales()) else { return true };
+        self.counts.law_evaluations += 1;
+        let force = law.force(&touch.branch, state.overlap + NEAR * scale, speed);
+        force.force_n == 0.0 || force.per_rate_n_s_m != 0.0
     }
 
     /// Whether the force of a contact that has just closed begins as `t^(3/2)`: its surfaces approach, and its force grows so.

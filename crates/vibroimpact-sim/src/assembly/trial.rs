@@ -23,6 +23,8 @@ pub(super) struct Trial<'a> {
     pub contacts: Vec<usize>,
     pub closed: usize,
     unknowns: Vec<Unknown<'a>>,
+    /// Their overlap's increase without contact forces up to the nodes, and its rate if the force may depend on it.
+    free: Vec<(Nodal, Option<Nodal>)>,
     /// The closed contacts' forces, at the nodes and as polynomials.
     pub solved: Vec<Collocated>,
     pub force: Vec<Legendre>,
@@ -36,20 +38,28 @@ impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
-        let Trial { contacts, closed, unknowns, solved, force, overlap, end, turns } = trial;
+        let Trial { contacts, closed, unknowns, free, solved, force, overlap, end, turns } = trial;
         let closed = *closed;
         self.responses.prepare(self.system, self.tables, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
+        for &c in &contacts[..closed] {
+            if self.force_by_rate(c) {
+                self.responses.prepare_rates(self.system, self.tables, level, &[c], &contacts[..closed]);
+            }
+        }
+        free.clear();
+        free.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         overlap.clear();
-        overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
+        overlap.extend(free.iter().map(|(moved, _)| *moved));
         unknowns.clear();
-        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i], |c| self.begins(c)));
+        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| free[i], |c| self.begins(c)));
         let (system, responses) = (self.system, &*self.responses);
         let response = |i: usize, j: usize| {
-            let response = responses.of(system, level, contacts[i], contacts[j])?;
-            Some(Mobility { nodes: &response.nodes, rigid: response.rigid })
+            let (c, other) = (contacts[i], contacts[j]);
+            let rates = free[i].1.and_then(|_| responses.rates(system, level, c, other));
+            Some(Mobility { nodes: &responses.of(system, level, c, other)?.nodes, rates })
         };
-        if !collocate(unknowns, response, h, (&mut self.newton, solved), &mut self.counts) {
+        if !collocate(unknowns, response, (&mut self.newton, solved), &mut self.counts) {
             return false;
         }
         force.clear();
@@ -61,7 +71,7 @@ impl<'a> March<'a> {
         }
         for &c in &contacts[closed..] {
             let start = self.states[c].overlap;
-            overlap.push(self.free_at_nodes(level, c, turns).map(|moved| start + moved));
+            overlap.push(self.free_at_nodes(level, c, turns).0.map(|moved| start + moved));
         }
         let (system, tables, responses) = (self.system, self.tables, &*self.responses);
         let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]);
@@ -98,7 +108,7 @@ impl<'a> March<'a> {
         &'s self,
         contacts: &'s [usize],
         h: f64,
-        free: impl Fn(usize) -> Nodal + 's,
+        free: impl Fn(usize) -> (Nodal, Option<Nodal>) + 's,
         ends: impl Fn(usize) -> Ends + 's,
     ) -> impl Iterator<Item = Unknown<'a>> + 's {
         let unknown = move |(i, &c): (usize, &usize)| {
@@ -108,13 +118,13 @@ impl<'a> March<'a> {
                 let ahead = if h <= FARTHEST * length { h / length } else { 0.0 };
                 force.at_each(&BASIS.nodes.map(|s| 1.0 + s * ahead)).map(|force| force.max(0.0))
             });
+            let (free, free_rate) = free(i);
             Some(Unknown {
                 law: self.law(c),
                 branch: touch.branch,
                 start: state.overlap,
-                free: free(i),
-                ends_by_rate: touch.ends_by_rate,
-                force_by_rate: touch.force_by_rate,
+                free,
+                free_rate,
                 accuracy: NEWTON_SHARE * self.impulse_tolerance(c) / h,
                 guess,
                 ends: ends(c),
@@ -128,11 +138,26 @@ impl<'a> March<'a> {
         Ends { begins: self.states[c].touch().is_some_and(|touch| touch.begins), ends: false }
     }
 
-    /// Increase of the overlap of a contact up to the nodes without contact forces.
-    fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> Nodal {
-        let panel = (self.time_s, step_s(level));
-        let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
-        std::array::from_fn(|i| moved[i] + self.loads.moved_on(c, panel, turns, i).0)
+    /// Whether the contact is closed, and its force may depend on the rate.
+    pub(super) fn force_by_rate(&self, c: usize) -> bool {
+        self.states[c].touch().is_some_and(|touch| touch.force_by_rate)
+    }
+
+    /// Increase of the overlap of a contact up to the nodes without contact forces, and its rate if the force may depend on it.
+    fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> (Nodal, Option<Nodal>) {
+        let (tables, link) = (self.tables, &self.system.links[c]);
+        let by_loads = |i: usize| self.loads.moved_on(c, (self.time_s, step_s(level)), turns, i);
+        if self.force_by_rate(c) {
+            let (mut moved, mut rate) = tables.free_with_rates(self.system, level, link, &self.amplitude, &self.rate);
+            for i in 0..Q {
+                let (more, faster) = by_loads(i);
+                moved[i] += more;
+                rate[i] += faster;
+            }
+            return (moved, Some(rate));
+        }
+        let moved = tables.free_at_nodes(level, link, &self.amplitude, &self.rate);
+        (std::array::from_fn(|i| moved[i] + by_loads(i).0), None)
     }
 
     pub(super) fn commit(&mut self, level: i32, trial: &Trial) {

@@ -14,7 +14,7 @@
 //! and the rest of the free motion follows from `p12 = K`, `p22 = K'`, `p11 = p22 + 2 sigma p12`, `p21 = -omega^2 p12`.
 //! Responses to forces are integrals of these.
 
-use super::forcing::Compliance;
+use super::forcing::{Compliance, Order};
 use super::legendre::{BASIS, Matrix, Nodal};
 use super::oscillator::{BodyMode, propagate, response_of};
 
@@ -26,12 +26,14 @@ const TERMS: usize = 10;
 pub(crate) struct ByDamping {
     /// Free motion over the step: amplitude and rate at the end, each from amplitude and from rate at the start.
     pub free: [[f64; 2]; 2],
-    /// Free motion at the nodes, from amplitude and from rate.
+    /// Free motion at the nodes, from amplitude and from rate, and its rate.
     pub at_nodes: (Nodal, Nodal),
+    pub rates: (Nodal, Nodal),
     /// Amplitude and rate at the end under unit Legendre forces.
     pub end: (Nodal, Nodal),
-    /// Response at the nodes to nodal forces.
+    /// Response at the nodes to nodal forces, and its rate.
     pub compliance: Matrix,
+    pub compliance_rates: Matrix,
 }
 
 impl ByDamping {
@@ -48,14 +50,19 @@ impl ByDamping {
                 (moved, speed)
             })
         };
-        let mut compliance = Compliance::new();
+        let [mut compliance, mut rates] = [Order::Displacement, Order::Velocity].map(Compliance::new);
         compliance.add_response(1.0, h, |t| response(t).0);
-        let at_nodes = BASIS.nodes.map(|c| free(mode, c * h)[0]);
+        rates.add_response(1.0, h, |t| response(t).1);
+        let at_nodes = BASIS.nodes.map(|c| free(mode, c * h));
+        let [by_amplitude, by_rate] = [0, 1].map(|from| at_nodes.map(|motion| motion[0][from]));
+        let [rate_by_amplitude, rate_by_rate] = [0, 1].map(|from| at_nodes.map(|motion| motion[1][from]));
         ByDamping {
             free: free(mode, h),
-            at_nodes: (at_nodes.map(|[from_amplitude, _]| from_amplitude), at_nodes.map(|[_, from_rate]| from_rate)),
+            at_nodes: (by_amplitude, by_rate),
+            rates: (rate_by_amplitude, rate_by_rate),
             end: response(h),
             compliance: compliance.at_nodes(h),
+            compliance_rates: rates.at_nodes(h),
         }
     }
 }
@@ -99,19 +106,21 @@ mod tests {
     /// All values at one damping ratio, by the methods of time integration.
     fn all(mode: &BodyMode, h: f64) -> Vec<f64> {
         let whole = propagate(mode, h);
-        let (Part { at_nodes, end }, compliance) = along(Way::of(mode, h), mode, h, &mut 2);
+        let of = |order| along((Way::of(mode, h), order), mode, h, &mut 2);
+        let ((Part { at_nodes, end }, compliance), (_, rates)) = (of(Order::Displacement), of(Order::Velocity));
         let free = [whole.p11_less_1, whole.p12, whole.p21, whole.p22];
         let rows = [free.to_vec(), at_nodes.0.to_vec(), at_nodes.1.to_vec(), end.0.to_vec(), end.1.to_vec()];
-        [rows.concat(), compliance.at_nodes(h).concat()].concat()
+        [rows.concat(), compliance.at_nodes(h).concat(), rates.at_nodes(h).concat()].concat()
     }
 
     #[test]
     fn derivatives_meet_differences_of_the_march_on_both_sides_of_the_double_root() {
         for zeta in [0.7, 0.95, 1.0 - 1e-9, 1.0, 1.0 + 1e-6, 1.04, 1.3] {
             for h in [1e-3, 0.1, 1.0, 2.9, 7.0, 40.0] {
-                let ByDamping { free, at_nodes, end, compliance } = ByDamping::new(&mode(zeta), h);
+                let ByDamping { free, at_nodes, end, compliance, compliance_rates, .. } =
+                    ByDamping::new(&mode(zeta), h);
                 let rows = [at_nodes.0, at_nodes.1, end.0, end.1];
-                let own = [free.concat(), rows.concat(), compliance.concat()].concat();
+                let own = [free.concat(), rows.concat(), compliance.concat(), compliance_rates.concat()].concat();
                 let [fine, coarse] = [5e-3, 1e-2].map(|step| {
                     let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|place| all(&mode(zeta + place * step), h));
                     let slope = |i: usize| (8.0 * (c[i] - b[i]) - (d[i] - a[i])) / (12.0 * step);

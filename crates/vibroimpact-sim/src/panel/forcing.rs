@@ -60,22 +60,32 @@ pub(crate) struct Part {
     pub end: (Nodal, Nodal),
 }
 
-/// The compliance as it is gathered from the modes of a body, from the slowest to the fastest.
+/// What of the motion under a force is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    Displacement,
+    Velocity,
+}
+
+/// The compliance, or its rate, as it is gathered from the modes of a body, from the slowest to the fastest.
 pub(crate) struct Compliance {
+    order: Order,
     /// Slow modes: derivatives of their common impulse response at zero, times `h^p`, in [`LANES`] partial sums.
     impulse: [[f64; LANES]; SERIES],
     /// Number of terms that the modes of this body and of the bodies before need.
     terms: usize,
     most_terms: usize,
-    /// Fast modes: `sum h^2 w Im(z^-(k+1)) / (omega_d h)`, what multiplies the derivatives of the force at the node.
+    /// Fast modes: `sum h^2 w Im(z^-(k+1)) / (omega_d h)`, what multiplies the derivatives of the force at the node; for velocities
+    /// `lambda z^-(k+1)` in its place.
     by_parts: Nodal,
-    /// `[n][i]`: displacement at node `i` to unit Legendre force `n`, of all that is neither of these.
+    /// `[n][i]`: motion at node `i` to unit Legendre force `n`, of all that is neither of these.
     legendre: Matrix,
 }
 
 impl Compliance {
-    pub fn new() -> Compliance {
+    pub fn new(order: Order) -> Compliance {
         Compliance {
+            order,
             impulse: [[0.0; LANES]; SERIES],
             terms: 2,
             most_terms: 0,
@@ -84,7 +94,7 @@ impl Compliance {
         }
     }
 
-    /// Adds slow modes with these weights: the impulse response from the start, `S^(p)(0) h^p`.
+    /// Adds slow modes with these weights: the impulse response from the start, `S^(p)(0) h^p`, or that of `S'`.
     #[inline(always)]
     pub fn add_slow(&mut self, modes: &[BodyMode; LANES], weights: &[f64; LANES], h: f64) {
         let (mut square, mut damping, mut turned) = ([0.0; LANES], [0.0; LANES], 0.0f64);
@@ -95,7 +105,10 @@ impl Compliance {
         // no fewer than slower ones
         self.terms = BASIS.terms::<SERIES>(turned, self.terms);
         self.most_terms = self.most_terms.max(self.terms);
-        let (mut here, mut next) = ([0.0; LANES], weights.map(|weight| h * weight));
+        let (mut here, mut next) = match self.order {
+            Order::Displacement => ([0.0; LANES], weights.map(|weight| h * weight)),
+            Order::Velocity => (*weights, array::from_fn(|l| -damping[l] * weights[l])),
+        };
         for sum in &mut self.impulse[..self.terms] {
             for l in 0..LANES {
                 sum[l] += here[l];
@@ -113,15 +126,20 @@ impl Compliance {
     #[inline(always)]
     pub fn add_by_parts(&mut self, modes: &ByParts, weights: &[f64; LANES]) {
         for (l, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-            let (inverse, scale) = (modes.inverse.of_lane(l), modes.scale.0[l]);
-            let mut power = inverse;
+            let (inverse, lambda, scale) = (modes.inverse.of_lane(l), modes.lambda.of_lane(l), modes.scale.0[l]);
+            let differentiated = |value: Complex64| match self.order {
+                Order::Displacement => value,
+                Order::Velocity => lambda * value,
+            };
+            let mut power = differentiated(inverse);
             for value in &mut self.by_parts {
                 *value += weight * scale * power.im;
                 power *= inverse;
             }
             let (nodes_re, nodes_im) = &modes.to_nodes[l];
             for (column, start) in self.legendre.iter_mut().zip(&modes.at_start) {
-                let (re, im) = (weight * scale * start.re.0[l], weight * scale * start.im.0[l]);
+                let start = differentiated(start.of_lane(l));
+                let (re, im) = (weight * scale * start.re, weight * scale * start.im);
                 for i in 0..Q {
                     column[i] -= re * nodes_im[i] + im * nodes_re[i];
                 }
@@ -131,7 +149,11 @@ impl Compliance {
 
     /// Adds any mode with this weight, by quadrature.
     pub fn add_by_quadrature(&mut self, mode: &BodyMode, weight: f64, h: f64) {
-        self.add_response(weight, h, |t| response(mode, t).0);
+        let order = self.order;
+        self.add_response(weight, h, |t| {
+            let (displacement, velocity) = response(mode, t);
+            if order == Order::Displacement { displacement } else { velocity }
+        });
     }
 
     /// Adds a response to unit Legendre forces with this weight.
@@ -147,14 +169,14 @@ impl Compliance {
         }
     }
 
-    /// Response at the nodes to nodal forces.
+    /// Motion at the nodes under nodal forces.
     pub fn at_nodes(&self, h: f64) -> Matrix {
         let basis = &*BASIS;
         vectorized(
             #[inline(always)]
             || {
                 let mut legendre = self.legendre;
-                if self.by_parts[0] != 0.0 {
+                if self.by_parts != [0.0; Q] {
                     for (s, derivatives) in self.by_parts.iter().zip(&basis.derivatives) {
                         for n in 0..Q {
                             for i in 0..Q {
@@ -345,8 +367,8 @@ const WEIGHTS: [f64; LANES] = [0.3, 0.0, 0.5, 0.2];
 
 /// One mode in this way.
 #[cfg(test)]
-pub(crate) fn along(way: Way, mode: &BodyMode, h: f64, terms: &mut usize) -> (Part, Compliance) {
-    let mut compliance = Compliance::new();
+pub(crate) fn along((way, order): (Way, Order), mode: &BodyMode, h: f64, terms: &mut usize) -> (Part, Compliance) {
+    let mut compliance = Compliance::new(order);
     let part = match way {
         Way::Series => {
             compliance.add_slow(&[*mode; LANES], &WEIGHTS, h);
@@ -378,7 +400,7 @@ mod tests {
     /// `moved`: how far free motion from a unit displacement goes, and what cancels in it, in size.
     fn assert_close(
         (one, other): ((Part, Compliance), (Part, Compliance)),
-        h: f64,
+        (h, order): (f64, Order),
         moved: f64,
         floor: f64,
         what: &str,
@@ -394,14 +416,15 @@ mod tests {
         close(&one.0.end.0, &other.0.end.0, h * h, "displacement");
         close(&one.0.end.1, &other.0.end.1, h, "velocity");
         let (one, other) = (one.1.at_nodes(h), other.1.at_nodes(h));
+        let unit = if order == Order::Displacement { h * h } else { h };
         for i in 0..Q {
-            close(&one[i], &other[i], h * h, "compliance");
+            close(&one[i], &other[i], unit, "compliance");
         }
     }
 
     /// By this way, and by quadrature.
-    fn each_way(mode: &BodyMode, h: f64, way: Way) -> ((Part, Compliance), (Part, Compliance)) {
-        (along(way, mode, h, &mut 2), along(Way::Quadrature, mode, h, &mut 2))
+    fn each_way(mode: &BodyMode, h: f64, way: Way, order: Order) -> ((Part, Compliance), (Part, Compliance)) {
+        (along((way, order), mode, h, &mut 2), along((Way::Quadrature, order), mode, h, &mut 2))
     }
 
     #[test]
@@ -410,9 +433,12 @@ mod tests {
             for zeta in [0.0, 0.02, 0.9, 0.9899, 0.995, 1.0, 1.2, 30.0] {
                 for turned in [SLOW, 0.99 * SLOW, 4.0, 2.0, 0.5, 1e-2, 1e-9] {
                     let mode = mode(turned / h / rate(&mode(1.0, zeta)), zeta);
-                    let both = each_way(&mode, h, Way::Series);
                     let angle = mode.omega_rad_s * h;
-                    assert_close(both, h, angle * (angle + zeta), 2e-14, &format!("{turned} {zeta} {h}"));
+                    for order in [Order::Displacement, Order::Velocity] {
+                        let both = each_way(&mode, h, Way::Series, order);
+                        let what = format!("{order:?} {turned} {zeta} {h}");
+                        assert_close(both, (h, order), angle * (angle + zeta), 2e-14, &what);
+                    }
                 }
             }
         }
@@ -424,10 +450,12 @@ mod tests {
             for zeta in [0.0, 0.02, 0.5, 0.9, 0.9899] {
                 for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
                     let mode = mode(turned / h, zeta);
-                    let both = each_way(&mode, h, Way::ByParts);
                     // the angle has a rounding error, and nearly equal roots cancel
-                    let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
-                    assert_close(both, h, 1.0, floor, &format!("{turned} {zeta} {h}"));
+                    let floor = (3e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
+                    for order in [Order::Displacement, Order::Velocity] {
+                        let both = each_way(&mode, h, Way::ByParts, order);
+                        assert_close(both, (h, order), 1.0, floor, &format!("{order:?} {turned} {zeta} {h}"));
+                    }
                 }
             }
         }
@@ -440,10 +468,12 @@ mod tests {
         for h in [1e-50, 1.0, 1e30] {
             let mut terms = 2;
             for mode in modes.clone() {
-                let (part, compliance) = along(Way::of(&mode, h), &mode, h, &mut terms);
-                assert!(finite(&part.at_nodes.0) && finite(&part.at_nodes.1), "{h}");
-                assert!(finite(&part.end.0) && finite(&part.end.1), "{h}");
-                assert!(finite(compliance.at_nodes(h).as_flattened()), "{h}");
+                for order in [Order::Displacement, Order::Velocity] {
+                    let (part, compliance) = along((Way::of(&mode, h), order), &mode, h, &mut terms);
+                    assert!(finite(&part.at_nodes.0) && finite(&part.at_nodes.1), "{h}");
+                    assert!(finite(&part.end.0) && finite(&part.end.1), "{h}");
+                    assert!(finite(compliance.at_nodes(h).as_flattened()), "{h}");
+                }
             }
         }
     }

@@ -44,9 +44,6 @@ pub(crate) struct Basis {
     /// Derivative at the nodes of the polynomial through the start (first) and the nodes (rest, by columns).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
-    /// Rates at the nodes that the polynomial through start and nodes misses if the last Legendre polynomial is the acceleration; under
-    /// nodal accelerations, by columns.
-    pub slope_missed: Matrix,
     /// The finer rule on (0, 1): node and weight.
     pub fine: Vec<(f64, f64)>,
 }
@@ -255,11 +252,6 @@ impl Basis {
                 slope_from_nodes[j][i] = from_nodes[j];
             }
         }
-        let last: Nodal = std::array::from_fn(|i| legendre(nodes[i])[Q - 1]);
-        let [rate, moved] = [0, 1].map(|p| apply(&power[p], &last));
-        let slope = apply(&slope_from_nodes, &moved);
-        let slope_missed =
-            std::array::from_fn(|j| std::array::from_fn(|i| (rate[i] - slope[i]) * to_coefficients[j][Q - 1]));
         Basis {
             nodes,
             weights: std::array::from_fn(|j| to_coefficients[j][0]),
@@ -273,7 +265,6 @@ impl Basis {
             work_from_nodes,
             slope_from_start,
             slope_from_nodes,
-            slope_missed,
             fine,
         }
     }

@@ -3,10 +3,11 @@
 use crate::assembly::change::Change;
 use crate::assembly::collocate::Mobility;
 use crate::assembly::system::{Span, System};
-use crate::assembly::tables::{Forced, with_rigid_modes};
+use crate::assembly::tables::{Forced, rates_at_nodes, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
 use crate::panel::dyadic::{Rotation, level_within, step_s};
-use crate::panel::legendre::{Nodal, Q, add};
+use crate::panel::forcing::Order;
+use crate::panel::legendre::{Matrix, Q, add};
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
@@ -14,8 +15,10 @@ use std::rc::Rc;
 pub(super) struct Expansion {
     pub rotation: Rotation,
     pub forced: Forced,
-    /// Responses of all modes together, at first `[p n + q]` over the closed contacts.
-    pub responses: Vec<[Nodal; Q]>,
+    /// Responses of all modes together, at first `[p n + q]` over the closed contacts, and their rates, where a force may depend on
+    /// the rate.
+    pub responses: Vec<Matrix>,
+    pub rates: Vec<Matrix>,
     /// For each change and pair of contacts, `[(d n + p) n + q]`, where its responses are among these: to `F`, and to `t F` and
     /// `t F'` where modes change.
     pub changed: Vec<[Option<usize>; 3]>,
@@ -25,9 +28,8 @@ pub(super) struct Expansion {
 
 impl Expansion {
     /// How the force of one closed contact moves the overlap of another.
-    pub fn mobility(&self, system: &System, closed: &[usize], (p, q): (usize, usize)) -> Mobility<'_> {
-        let rigid = system.links[closed[p]].shared_rigid(&system.links[closed[q]]);
-        Mobility { nodes: &self.responses[p * closed.len() + q], rigid }
+    pub fn mobility(&self, pair: usize) -> Mobility<'_> {
+        Mobility { nodes: &self.responses[pair], rates: self.rates.get(pair) }
     }
 
     /// The modes next to critical damping whose damping a change moves, and by how much.
@@ -42,9 +44,12 @@ impl Expansion {
                 let Some(mode) = self.critical.get(k) else { continue };
                 for (product, [of_force, _, _]) in products.iter().zip(&mut *pairs) {
                     let place = *of_force.get_or_insert(self.responses.len());
-                    self.responses.resize(self.responses.len().max(place + 1), [[0.0; Q]; Q]);
-                    for (column, response) in self.responses[place].iter_mut().zip(&mode.compliance) {
-                        add(column, by_zeta * product[*k], response);
+                    let tables = [(&mut self.responses, &mode.compliance), (&mut self.rates, &mode.compliance_rates)];
+                    for (table, changed) in tables.into_iter().filter(|(table, _)| !table.is_empty()) {
+                        table.resize(table.len().max(place + 1), [[0.0; Q]; Q]);
+                        for (column, changed) in table[place].iter_mut().zip(changed) {
+                            add(column, by_zeta * product[*k], changed);
+                        }
                     }
                 }
             }
@@ -52,14 +57,20 @@ impl Expansion {
     }
 }
 
-/// Cached expansions of panels by length and closed contacts, for one system and the same parameters.
+/// Cached expansions of panels by length, closed contacts and whether rates are included, for one system and the same parameters.
 #[derive(Default)]
-pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
+pub(crate) struct Expansions(HashMap<(u64, Vec<usize>, bool), Rc<Expansion>>);
 
 impl Expansions {
-    /// The expansion for panels of this length with these contacts closed.
-    pub(super) fn of(&mut self, system: &System, changes: &[Change], h: f64, closed: &[usize]) -> Rc<Expansion> {
-        let key = (h.to_bits(), closed.to_vec());
+    /// The expansion for panels of this length with these contacts closed, with rates or without.
+    pub(super) fn of(
+        &mut self,
+        system: &System,
+        changes: &[Change],
+        h: f64,
+        (closed, by_rate): (&[usize], bool),
+    ) -> Rc<Expansion> {
+        let key = (h.to_bits(), closed.to_vec(), by_rate);
         if let Some(kept) = self.0.get(&key) {
             return kept.clone();
         }
@@ -113,20 +124,22 @@ impl Expansions {
         // a flight needs nothing but free motion
         let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
         let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
-        let responses = elastic
-            .iter()
-            .zip(&weights)
-            .map(|(elastic, weights)| {
+        let with_rigid = |elastic: Vec<Matrix>, order: Order| -> Vec<Matrix> {
+            let of = |(elastic, weights): (Matrix, &Vec<f64>)| {
                 let rigid = system.modes.iter().zip(weights).filter(|(mode, _)| mode.is_rigid());
-                with_rigid_modes(*elastic, rigid.map(|(_, weight)| weight).sum(), h)
-            })
-            .collect();
+                with_rigid_modes(elastic, order, rigid.map(|(_, weight)| weight).sum(), h)
+            };
+            elastic.into_iter().zip(&weights).map(of).collect()
+        };
+        let responses = with_rigid(elastic, Order::Displacement);
+        let elastic_rates = if by_rate { rates_at_nodes(system, h, &weights) } else { Vec::new() };
+        let rates = with_rigid(elastic_rates, Order::Velocity);
         let by_damping = |(k, _): &(usize, f64)| {
             let mode = &system.modes[*k];
             (*k, if closed.is_empty() { ByDamping::of_free_motion(mode, h) } else { ByDamping::new(mode, h) })
         };
         let critical = changes.iter().flat_map(|change| &change.critical).map(by_damping).collect();
-        let mut expansion = Expansion { rotation, forced, responses, changed, critical };
+        let mut expansion = Expansion { rotation, forced, responses, rates, changed, critical };
         expansion.add_critical(changes, &weights[..n * n]);
         let expansion = Rc::new(expansion);
         if step_s(level_within(h)) == h {

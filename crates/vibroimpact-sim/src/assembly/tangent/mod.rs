@@ -171,14 +171,15 @@ impl Walk<'_> {
             (ending, _) => ending,
         };
         let closed: Vec<usize> = stretch.forces.iter().map(|acting| acting.contact).collect();
-        let expansion = self.expansions.of(self.system, self.changes, h, &closed);
+        let by_rate = stretch.forces.iter().any(|acting| acting.by_rate);
+        let expansion = self.expansions.of(self.system, self.changes, h, (&closed, by_rate));
         let solved = self.solved(stretch, &expansion);
         if !closed.is_empty() {
             let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
             let system = self.system;
             let shares = |p: usize, q: usize| system.neighbours[closed[p]].contains(&closed[q]);
-            let response = |p: usize, q: usize| shares(p, q).then(|| expansion.mobility(system, &closed, (p, q)));
-            self.blocks.factor(&values, |q| solved[q].ends, &response, h);
+            let response = |p: usize, q: usize| shares(p, q).then(|| expansion.mobility(p * closed.len() + q));
+            self.blocks.factor(&values, |q| solved[q].ends, &response);
         }
         let from = [stretch.amplitude.as_slice(), &stretch.rate];
         let bends = [

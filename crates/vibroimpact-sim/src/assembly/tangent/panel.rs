@@ -2,12 +2,13 @@
 
 use super::expansion::Expansion;
 use super::walk::{LAW_STEP, Moved, Walk, shifted, size_of};
+use crate::assembly::collocate::Mobility;
 use crate::assembly::dense::{Acting, Stretch};
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
 use crate::panel::ends::Ends;
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, add, apply, dot, slopes};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, add, apply, dot, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
@@ -28,8 +29,10 @@ pub(super) struct Solved {
     pub force_rate: Nodal,
     pub timed: Nodal,
     pub timed_rate: Nodal,
-    /// Compression and its rate at the nodes, with the law there.
-    pub start: f64,
+    /// Whether the force may depend on the rate of compression.
+    pub by_rate: bool,
+    /// Rate of compression at the start; compression and rate at the nodes, with the law there.
+    pub start_rate: f64,
     pub compression: Nodal,
     pub rate: Nodal,
     pub law: [Force; Q],
@@ -51,13 +54,16 @@ pub(super) struct Passage<'a> {
     pub bends: [Vec<f64>; 2],
 }
 
-/// Derivative of the overlap of a contact by free motion: at the start and at the nodes, and the part multiplied by the time.
+/// Derivative of the overlap of a contact by free motion: at the start and from there to the nodes, and the part multiplied by the
+/// time, with their rates where they are asked for.
 #[derive(Default)]
-pub(super) struct Seen {
-    pub start: f64,
-    pub moved: Nodal,
-    pub timed_start: f64,
-    pub timed: Nodal,
+struct Seen {
+    start: f64,
+    moved: Nodal,
+    rate: Nodal,
+    timed_start: f64,
+    timed: Nodal,
+    timed_rate: Nodal,
 }
 
 fn times(one: &Nodal, other: &Nodal) -> Nodal {
@@ -68,22 +74,30 @@ impl Walk<'_> {
     pub fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
         let (h, n) = (stretch.length_s, stretch.forces.len());
         let place = BASIS.nodes.map(|s| s * h);
-        let closed: Vec<usize> = stretch.forces.iter().map(|acting| acting.contact).collect();
-        let of = |(p, Acting { contact: c, force, ends }): (usize, &Acting)| {
+        let of = |(p, Acting { contact: c, force, ends, by_rate }): (usize, &Acting)| {
             let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
             let branch = stretch.contacts[*c].branch?;
-            let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
-            let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
-            compression.iter_mut().enumerate().for_each(|(i, value)| *value += moved(i));
-            let mut missed = [0.0; Q];
-            for (q, other) in stretch.forces.iter().enumerate() {
-                let nodal = other.force.nodal();
-                add(&mut compression, 1.0, &apply(&expansion.responses[p * n + q], &nodal));
-                add(&mut missed, 1.0, &expansion.mobility(self.system, &closed, (p, q)).missed(&nodal, h));
+            let (spans, amplitude, rate) = (&link.spans, &stretch.amplitude, &stretch.rate);
+            let (mut compression, mut rate) = match by_rate {
+                true => expansion.forced.free_with_rates(self.system, spans, amplitude, rate),
+                false => (expansion.forced.free_at_nodes(spans, amplitude, rate), [0.0; Q]),
+            };
+            for i in 0..Q {
+                let (moved, faster) = self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h);
+                compression[i] += moved;
+                rate[i] += faster;
             }
-            // the value at the start is added later, since slopes would magnify its rounding on short panels
-            let mut rate = slopes(0.0, &compression, h);
-            add(&mut rate, 1.0, &missed);
+            for (q, other) in stretch.forces.iter().enumerate() {
+                let Mobility { nodes, rates } = expansion.mobility(p * n + q);
+                add(&mut compression, 1.0, &apply(nodes, &other.force.nodal()));
+                if let Some(rates) = rates {
+                    add(&mut rate, 1.0, &apply(rates, &other.force.nodal()));
+                }
+            }
+            if !by_rate {
+                // the value at the start is added later, since slopes would magnify its rounding on short panels
+                rate = slopes(0.0, &compression, h);
+            }
             compression.iter_mut().for_each(|value| *value += followed.overlap);
             let law = self.posed.laws[*c];
             let nodal = force.nodal();
@@ -107,7 +121,8 @@ impl Walk<'_> {
                 timed_rate,
                 nodal,
                 force_rate,
-                start: followed.overlap,
+                by_rate: *by_rate,
+                start_rate: followed.rate,
                 law: array::from_fn(|i| law.force(&branch, compression[i], rate[i])),
                 compression,
                 rate,
@@ -159,44 +174,60 @@ impl Walk<'_> {
         }
         for (p, own) in solved.iter().enumerate() {
             let c = own.contact;
-            let Seen { start, moved: mut found, timed_start, mut timed } =
-                self.seen(d, c, &expansion.forced, [amplitude, rate], [a, b, &passage.bends[0]]);
+            let Seen { start, moved: mut found, rate: mut found_rate, timed_start, mut timed, mut timed_rate } =
+                self.seen(d, own, &expansion.forced, [amplitude, rate], [a, b, &passage.bends[0]]);
             let start = start + self.beyond(d, c, from.start_s)[0];
             timed.iter_mut().for_each(|value| *value += timed_start);
             for (q, other) in solved.iter().enumerate() {
                 let places = expansion.changed[(d * n + p) * n + q];
-                let [of_force, of_timed, of_timed_rate] = places.map(|place| place.map(|i| &expansion.responses[i]));
-                if let Some(response) = of_force {
-                    add(&mut found, 1.0, &apply(response, &other.nodal));
-                }
-                if let Some(response) = of_timed {
-                    add(&mut found, 1.0, &apply(response, &other.timed));
-                    add(&mut timed, -1.0, &apply(response, &other.nodal));
-                }
-                if let Some(response) = of_timed_rate {
-                    add(&mut found, -1.0, &apply(response, &other.timed_rate));
-                    add(&mut timed, 1.0, &apply(response, &other.force_rate));
+                let respond = |responses: &[Matrix], found: &mut Nodal, timed: &mut Nodal| {
+                    let [of_force, of_timed, of_timed_rate] = places.map(|place| responses.get(place?));
+                    if let Some(response) = of_force {
+                        add(found, 1.0, &apply(response, &other.nodal));
+                    }
+                    if let Some(response) = of_timed {
+                        add(found, 1.0, &apply(response, &other.timed));
+                        add(timed, -1.0, &apply(response, &other.nodal));
+                    }
+                    if let Some(response) = of_timed_rate {
+                        add(found, -1.0, &apply(response, &other.timed_rate));
+                        add(timed, 1.0, &apply(response, &other.force_rate));
+                    }
+                };
+                respond(&expansion.responses, &mut found, &mut timed);
+                if own.by_rate {
+                    respond(&expansion.rates, &mut found_rate, &mut timed_rate);
                 }
             }
             for i in 0..Q {
-                found[i] += BASIS.nodes[i] * h * timed[i];
+                let s = BASIS.nodes[i] * h;
+                found[i] += s * timed[i];
+                found_rate[i] += timed[i] + s * timed_rate[i];
             }
             for (k, by_zeta, mode) in expansion.critical(change) {
                 let weight = by_zeta * system.links[c].weight(k);
                 add(&mut found, weight * a[k], &mode.at_nodes.0);
                 add(&mut found, weight * b[k], &mode.at_nodes.1);
+                add(&mut found_rate, weight * a[k], &mode.rates.0);
+                add(&mut found_rate, weight * b[k], &mode.rates.1);
             }
-            for (found, s) in found.iter_mut().zip(BASIS.nodes).filter(|_| !self.loads.is_empty()) {
-                *found += tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
+            for (i, s) in BASIS.nodes.iter().enumerate().filter(|_| !self.loads.is_empty()) {
+                let (moved, faster) = self.loads.moved_later(c, from.start_s, s * h);
+                found[i] += tangent.time_s * moved;
+                found_rate[i] += tangent.time_s * faster;
             }
             if let Some(loads) = &self.load_changes[d] {
-                found.iter_mut().zip(BASIS.nodes).for_each(|(found, s)| *found += loads.moved(c, from.start_s, s * h));
+                for (i, s) in BASIS.nodes.iter().enumerate() {
+                    let (moved, faster) = loads.moved(c, from.start_s, s * h);
+                    found[i] += moved;
+                    found_rate[i] += faster;
+                }
             }
-            let slope = slopes(0.0, &found, h);
             found.iter_mut().for_each(|value| *value += start);
             let by_law = self.force_change(d, own);
             law.push(array::from_fn(|i| {
-                own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * slope[i] + by_law[i]
+                let by_motion = own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * found_rate[i];
+                by_motion + by_law[i]
             }));
             overlap.push(found);
         }
@@ -263,26 +294,34 @@ impl Walk<'_> {
     }
 
     /// Derivative of the overlap of a contact by free motion from `y` and from the state, in one pass over the modes.
-    fn seen(&self, d: usize, c: usize, forced: &Forced, y: [&[f64]; 2], [a, b, bend]: [&[f64]; 3]) -> Seen {
-        let change = &self.changes[d];
+    fn seen(&self, d: usize, own: &Solved, forced: &Forced, y: [&[f64]; 2], [a, b, bend]: [&[f64]; 3]) -> Seen {
+        let (system, change) = (self.system, &self.changes[d]);
         let mut seen = Seen::default();
-        for (Span { modes, psi }, Span { psi: by, .. }) in self.system.links[c].spans.iter().zip(&change.psi[c]) {
+        let spans = system.links[own.contact].spans.iter().zip(&change.psi[own.contact]);
+        for (Span { modes, psi }, Span { psi: by, .. }) in spans {
             let at_nodes = &forced.at_nodes[modes.clone()];
-            let [ya, yb] = y.map(|values| &values[modes.clone()]);
-            let [a, b, bend] = [a, b, bend].map(|values| &values[modes.clone()]);
-            let (start, moved) = swept(at_nodes, [psi, by, ya, yb, a, b], |[psi, by, ya, yb, a, b]| {
-                (psi * ya + by * a, psi * yb + by * b)
-            });
+            let [drag, square, ya, yb, a, b, bend, fade, stretch] =
+                [&system.drag, &system.square, y[0], y[1], a, b, bend, &change.fade, &change.stretch]
+                    .map(|values| values.get(modes.clone()).unwrap_or(&[]));
+            let moves = |[psi, by, ya, yb, a, b]: [f64; 6]| (psi * ya + by * a, psi * yb + by * b);
+            let rows = [psi, by, ya, yb, a, b];
+            let (start, moved) = swept(at_nodes, rows, moves);
             seen.start += start;
             add(&mut seen.moved, 1.0, &moved);
+            if own.by_rate {
+                add(&mut seen.rate, 1.0, &swept_rates(at_nodes, rows, moves, [drag, square]));
+            }
             if change.moves_modes {
-                let [fade, stretch] = [&change.fade, &change.stretch].map(|values| &values[modes.clone()]);
-                let (start, timed) =
-                    swept(at_nodes, [psi, fade, stretch, a, b, bend], |[psi, fade, stretch, a, b, bend]| {
-                        (psi * (stretch * b - fade * a), psi * (stretch * bend - fade * b))
-                    });
+                let moves = |[psi, fade, stretch, a, b, bend]: [f64; 6]| {
+                    (psi * (stretch * b - fade * a), psi * (stretch * bend - fade * b))
+                };
+                let rows = [psi, fade, stretch, a, b, bend];
+                let (start, timed) = swept(at_nodes, rows, moves);
                 seen.timed_start += start;
                 add(&mut seen.timed, 1.0, &timed);
+                if own.by_rate {
+                    add(&mut seen.timed_rate, 1.0, &swept_rates(at_nodes, rows, moves, [drag, square]));
+                }
             }
         }
         seen
@@ -322,21 +361,16 @@ impl Walk<'_> {
         let (h, n) = (from.length_s, solved.len());
         let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to[0].len()]);
         let carried: Vec<Nodal> = solved.iter().map(|own| times(&BASIS.nodes, &own.force_rate)).collect();
-        let closed: Vec<usize> = solved.iter().map(|own| own.contact).collect();
-        let respond = |p: usize, force: &[Nodal]| {
+        let respond = |responses: &[Matrix], p: usize, force: &[Nodal]| {
             let mut moved = [0.0; Q];
-            for (q, force) in force.iter().enumerate() {
-                add(&mut moved, 1.0, &apply(&expansion.responses[p * n + q], force));
+            for (response, force) in responses.iter().skip(p * n).zip(force) {
+                add(&mut moved, 1.0, &apply(response, force));
             }
             moved
         };
         let by_law = |(p, own): (usize, &Solved)| -> Nodal {
-            let moved = respond(p, &carried);
-            let mut slope = slopes(0.0, &moved, h);
-            for (q, force) in carried.iter().enumerate() {
-                add(&mut slope, 1.0, &expansion.mobility(self.system, &closed, (p, q)).missed(force, h));
-            }
-            let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
+            let [moved, slope] = [&expansion.responses, &expansion.rates].map(|table| respond(table, p, &carried));
+            let bend = slopes(own.start_rate, &own.rate, h);
             array::from_fn(|i| {
                 let (law, s) = (&own.law[i], BASIS.nodes[i]);
                 law.per_compression_n_m * (s * own.rate[i] - moved[i]) + law.per_rate_n_s_m * (s * bend[i] - slope[i])
@@ -351,7 +385,7 @@ impl Walk<'_> {
             array::from_fn(|i| acting[i] - carried[i])
         };
         let force: Vec<Nodal> = solved.iter().zip(&law).zip(&carried).map(acting).collect();
-        let overlap = (0..n).map(|p| respond(p, &force)).collect();
+        let overlap = (0..n).map(|p| respond(&expansion.responses, p, &force)).collect();
         for (own, force) in solved.iter().zip(&force) {
             let spans = &self.system.links[own.contact].spans;
             expansion.forced.push(spans, &Legendre::through(force), &mut amplitude, &mut rate);
@@ -409,8 +443,17 @@ fn swept<const N: usize>(
     )
 }
 
-/// Rate at the start of a polynomial by its values at the start and at the nodes.
-fn slope_at_start(start: f64, nodal: &Nodal, h: f64) -> f64 {
-    let rates = slopes(start, nodal, h);
-    Legendre::through(&rates).at(0.0)
+/// The rate of this sum at the nodes: free motion from the rates and accelerations of the modes at the start.
+fn swept_rates(
+    at_nodes: &[(Nodal, Nodal)],
+    [one, two, three, four, five, six]: [&[f64]; 6],
+    motion: impl Fn([f64; 6]) -> (f64, f64),
+    [drag, square]: [&[f64]; 2],
+) -> Nodal {
+    let rows = [one, two, three, four, five, six, drag, square];
+    let (start, moved) = swept(at_nodes, rows, |[one, two, three, four, five, six, drag, square]| {
+        let (a, b) = motion([one, two, three, four, five, six]);
+        (b, -drag * b - square * a)
+    });
+    moved.map(|moved| start + moved)
 }
