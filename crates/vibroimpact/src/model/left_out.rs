@@ -63,15 +63,16 @@ const EARLIER: f64 = 1.0 / 3.0;
 pub(super) struct Change {
     /// Of the restitution; 1 if only one of them has a restitution.
     pub restitution: f64,
-    /// Of the speed of a flight between two contacts, as a share of the speed of impact.
+    /// Of the speed of a flight between two contacts, relative to the rigid-body motion of the structure and as a share of the
+    /// speed of impact: of the restitution that the impact would have if it ended there.
     pub flights: f64,
 }
 
 impl Change {
-    pub fn between(a: &Solution, b: &Solution, momentum_n_s: f64) -> Change {
+    pub fn between(a: &Solution, b: &Solution, per_impulse: f64) -> Change {
         let pair = a.restitution.zip(b.restitution);
-        let flights = if momentum_n_s > 0.0 && momentum_n_s.is_finite() {
-            distance(&flights(a, momentum_n_s), &flights(b, momentum_n_s))
+        let flights = if per_impulse > 0.0 && per_impulse.is_finite() {
+            distance(&flights(a, per_impulse), &flights(b, per_impulse))
         } else {
             0.0
         };
@@ -120,14 +121,24 @@ pub(super) fn still_growing(modes: &[Mode]) -> f64 {
     }
 }
 
-/// Impulse up to each separation, over the striker's momentum.
-fn flights(solution: &Solution, momentum_n_s: f64) -> Vec<f64> {
+/// Restitution per impulse `(1/m + sum phi^2)/v` of an impact, with the rigid-body motions `phi` of its structure and the speed of
+/// approach `v` (1/(N s)).
+pub(super) fn restitution_per_impulse(impact: &Impact) -> f64 {
+    let Impact { structure, striker, start, .. } = impact;
+    let rigid = || structure.modes.iter().enumerate().filter(|(_, mode)| mode.omega_rad_s == 0.0);
+    let mobility = striker.mass_kg.recip() + rigid().map(|(_, mode)| mode.shape.powi(2)).sum::<f64>();
+    let rate = |k: usize| start.as_ref().and_then(|start| start.rate.get(k)).copied().unwrap_or(0.0);
+    mobility / (striker.speed_m_s + rigid().map(|(k, mode)| mode.shape * rate(k)).sum::<f64>())
+}
+
+/// One more than the restitution that the impact would have if it ended with each of its separations.
+fn flights(solution: &Solution, per_impulse: f64) -> Vec<f64> {
     let mut sum = 0.0;
     let separations = solution.sub_impacts.iter();
     separations
         .map(|contact| {
             sum += contact.impulse_n_s;
-            sum / momentum_n_s
+            sum * per_impulse
         })
         .collect()
 }
@@ -191,6 +202,32 @@ mod tests {
         // a third contact that does not change the result
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
         assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    /// On a free beam that is much lighter than the striker, at rest and in motion.
+    #[test]
+    fn a_flight_counts_as_the_restitution_of_an_impact_that_ends_with_it() {
+        let mut scene = serde_json::json!({
+            "structure": { "kind": "beam", "ends": ["free", "free"], "damping_ratio": 0.02, "segments": [
+                { "length_m": 0.3, "flexural_rigidity_n_m2": 20.0, "mass_per_length_kg_m": 0.2 }
+            ] },
+            "striker": { "mass_kg": 3.0, "speed_m_s": 0.5 },
+            "contact": { "law": "linear-spring", "stiffness_n_m": 1e6 }, "location_m": 0.1, "modes": 6
+        });
+        for start in [
+            serde_json::Value::Null,
+            serde_json::json!({ "gap_m": 1e-4, "moving_modes": [
+            { "mode": 1, "velocity_m_s": 0.2, "location_m": 0.1 }
+        ] }),
+        ] {
+            if !start.is_null() {
+                scene["start"] = start;
+            }
+            let impact = crate::Scene::from_value(&scene).unwrap().impact().unwrap();
+            let solution = impact.solve().unwrap();
+            let last = flights(&solution, restitution_per_impulse(&impact)).pop().unwrap();
+            assert!((last - 1.0 - solution.restitution.unwrap()).abs() < 1e-8, "{last}, {solution:?}");
+        }
     }
 
     #[test]

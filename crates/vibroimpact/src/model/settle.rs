@@ -26,7 +26,8 @@ use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, energy_of_remainder, still_growing, too_short, with_one_remainder_mode, with_softer_remainder,
+    Change, at_the_end, energy_of_remainder, restitution_per_impulse, still_growing, too_short,
+    with_one_remainder_mode, with_softer_remainder,
 };
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
@@ -109,9 +110,10 @@ impl Rung {
         let listed = matches!(pose.source, Source::Listed { .. });
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
+        let per_impulse = restitution_per_impulse(&self.impact);
         let mut changed = |other: Structure| {
             let (other, _) = solve(pose, &Impact { structure: other, ..self.impact.clone() }, cost)?;
-            Ok::<_, InvalidInput>(Change::between(&other, &self.solution, momentum_n_s(pose)).size())
+            Ok::<_, InvalidInput>(Change::between(&other, &self.solution, per_impulse).size())
         };
         let mut tail = Tail::default();
         let Impact { structure, remainder_modes, .. } = &self.impact;
@@ -142,15 +144,12 @@ fn solve(pose: &mut Pose, impact: &Impact, cost: &mut Cost) -> Result<(Solution,
     Ok(solved)
 }
 
-fn momentum_n_s(pose: &Pose) -> f64 {
-    pose.striker.mass_kg * pose.striker.speed_m_s
-}
-
 /// The numbers of modes tried so far.
 struct Rungs {
     earlier: Vec<Rung>,
     last: Rung,
-    momentum_n_s: f64,
+    /// Restitution per impulse (1/(N s)).
+    per_impulse: f64,
     /// The number of modes, if there is one, that makes up the whole static compliance.
     complete: Option<usize>,
     /// The number of modes with which the impact reached a limit of steps.
@@ -194,7 +193,7 @@ impl Rungs {
     fn changes(&self) -> impl Iterator<Item = (Change, [usize; 2])> {
         let pairs = self.near().zip(self.near().skip(1)).filter(|(next, last)| next.count != last.count);
         pairs.map(|(next, last)| {
-            (Change::between(&last.solution, &next.solution, self.momentum_n_s), [last.count, next.count])
+            (Change::between(&last.solution, &next.solution, self.per_impulse), [last.count, next.count])
         })
     }
 
@@ -230,7 +229,7 @@ impl Rungs {
     fn solver(&self) -> f64 {
         let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
         let change = match wider {
-            Some(wider) => Change::between(&wider.solution, &self.last.solution, self.momentum_n_s).size(),
+            Some(wider) => Change::between(&wider.solution, &self.last.solution, self.per_impulse).size(),
             None if self.near().count() > 2 => self.sizes().first().copied().unwrap_or(1.0),
             None => 0.0,
         };
@@ -261,8 +260,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
     let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
-    let mut rungs =
-        Rungs { last: first, earlier: Vec::new(), momentum_n_s: momentum_n_s(pose), complete, too_many: None };
+    let per_impulse = restitution_per_impulse(&first.impact);
+    let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, complete, too_many: None };
     loop {
         let count = rungs.last.count;
         if rungs.last.takes_too_many_steps() && (count > 1 || !rungs.earlier.is_empty()) {
@@ -358,7 +357,7 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Op
     let changed = match rungs.changes().next() {
         _ if rungs.is_complete() => "they make up the whole static compliance".to_owned(),
         Some((change, [from, to])) => format!(
-            "from {from} to {to} modes the restitution changes by {}, and the speed of a flight between contacts by at \
+            "from {from} to {to} modes the restitution changes by {}, and the relative speed of a flight between contacts by at \
              most {} of the speed of impact",
             small(change.restitution),
             small(change.flights)

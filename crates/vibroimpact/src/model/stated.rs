@@ -25,7 +25,7 @@ use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
-use super::left_out::{Change, energy_of_remainder, with_softer_remainder};
+use super::left_out::{Change, energy_of_remainder, restitution_per_impulse, with_softer_remainder};
 use super::pose::Pose;
 use super::settle::{Conclusion, LUCK};
 use super::uncertainty::Known;
@@ -125,8 +125,8 @@ impl Other {
 impl Compared {
     /// Effect of the truncated modes on the solution of the impact.
     fn left_out(&self, impact: &Impact, solution: &Solution) -> f64 {
-        let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
-        let change = |other: &Solution| Change::between(other, self.richer.or(solution), momentum_n_s);
+        let per_impulse = restitution_per_impulse(impact);
+        let change = |other: &Solution| Change::between(other, self.richer.or(solution), per_impulse);
         let stated = change(solution).restitution;
         let energy = match &self.richer {
             Other::Itself => energy_of_remainder(impact, solution),
