@@ -10,6 +10,18 @@
 //! Changes that decrease as `1/N` add up to 2.4 times the one by the last step of a factor of 1.4, and to 3 times if they decrease as
 //! `N^(-0.83)`. The restitution of a light ball on a Timoshenko beam converges as slowly as that.
 //!
+//! A force that jumps at first touch gives a mode of the frequency `omega` a speed in proportion to `1/omega`, where a force that grows
+//! from zero gives it a higher power. On a structure whose frequencies grow as `N`, the truncated modes change motion and contact as the
+//! terms beyond `N` of the Fourier series of a jump do, by about `cos(omega_N tau)/N`, with a time `tau` between a wave and a contact.
+//! Such changes nearly vanish where the cosine does, for two or three steps in sequence, while the amplitude of the error still decreases
+//! as `1/N`. The largest of the last changes shows this amplitude, so that with such a force
+//!
+//! ```text
+//! u >= max( d_2 N_2, d_3 N_3, d_4 N_4 ) / N_1
+//! ```
+//!
+//! as well, where `N_i` is the larger number of modes of the change `d_i`.
+//!
 //! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
 //! the truncated modes; if they vibrate, the force was too fast for them. This share is known from one impact alone, and detects
 //! most accidental agreements. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
@@ -57,6 +69,8 @@ const STILL_GROWING: f64 = 4.0;
 const RESOLVED: f64 = 0.1;
 /// Weight of the change before the last.
 const EARLIER: f64 = 1.0 / 3.0;
+/// Number of changes before the last that count if the force jumps at first touch, as what they decrease to in proportion to `1/N`.
+const SLOW: usize = 3;
 
 /// Differences between two solutions.
 #[derive(Debug, Clone, Copy, Default)]
@@ -83,11 +97,16 @@ impl Change {
     pub fn size(self) -> f64 {
         self.restitution.max(FLIGHTS * self.flights)
     }
+}
 
-    /// Possible change by the truncated modes, from this change from fewer modes.
-    pub fn left_out(self, before: Option<Change>) -> f64 {
-        CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
-    }
+/// Possible change by the truncated modes, from the sizes of changes and the numbers of modes after them, the latest first. `jumps`
+/// states whether the force jumps at first touch.
+pub(super) fn by_changes(changes: &[(f64, usize)], jumps: bool) -> f64 {
+    let Some((&(latest, count), before)) = changes.split_first() else { return 1.0 };
+    let earlier = before.first().map_or(0.0, |&(size, _)| EARLIER * size);
+    let slow = before.iter().take(if jumps { SLOW } else { 0 });
+    let slow = slow.map(|&(size, after)| size * after as f64 / count as f64).fold(0.0, f64::max);
+    (CAUTION * latest.max(earlier)).max(slow)
 }
 
 /// Factor for a contact that is so short that it hardly moves the remainder modes.
@@ -95,11 +114,15 @@ pub(super) fn too_short(resolution: f64) -> f64 {
     if resolution < 1.0 { resolution.max(f64::MIN_POSITIVE).powf(-0.5) } else { 1.0 }
 }
 
+/// Whether the force jumps at first touch.
+pub(super) fn jumps(law: &Law, striker: &Striker) -> bool {
+    let branch = law.touch(&Memory::default(), striker.speed_m_s);
+    law.force(&branch, 0.0, striker.speed_m_s).force_n > 0.0
+}
+
 /// `D`, the factor for a force that jumps at first touch.
 pub(super) fn taken_by_dashpot(law: &Law, striker: &Striker) -> f64 {
-    let branch = law.touch(&Memory::default(), striker.speed_m_s);
-    let jumps = law.force(&branch, 0.0, striker.speed_m_s).force_n > 0.0;
-    if jumps { TAKEN } else { 1.0 }
+    if jumps(law, striker) { TAKEN } else { 1.0 }
 }
 
 /// Possible change by the truncated modes at the end of a list, from its changes, the latest first.
@@ -228,6 +251,14 @@ mod tests {
             let last = flights(&solution, restitution_per_impulse(&impact)).pop().unwrap();
             assert!((last - 1.0 - solution.restitution.unwrap()).abs() < 1e-8, "{last}, {solution:?}");
         }
+    }
+
+    #[test]
+    fn changes_of_a_force_that_jumps_decrease_no_faster_than_the_number_of_modes_grows() {
+        let changes = [(1.0, 200), (2.0, 140), (9.0, 100), (100.0, 50), (1e5, 20)];
+        assert_eq!((by_changes(&[], false), by_changes(&changes[..1], true)), (1.0, 3.0));
+        assert_eq!((by_changes(&changes, false), by_changes(&changes[..3], true)), (3.0, 4.5));
+        assert_eq!(by_changes(&changes, true), 25.0);
     }
 
     #[test]

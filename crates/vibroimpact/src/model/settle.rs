@@ -7,7 +7,8 @@
 //! Restitutions may agree by accident while the histories of two impacts do not, and then differ again at the next number. The
 //! striker's speed in every flight between two contacts is therefore compared as well, and after more than one contact a third
 //! number of modes is required. So it is for plates, most of whose modes hardly move a given location: the modes between two numbers
-//! may be such modes.
+//! may be such modes. And so it is where the force jumps at first touch: changes then decrease slowly, and vary by accident
+//! (`left_out.rs`).
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
@@ -26,7 +27,7 @@ use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, energy_of_remainder, restitution_per_impulse, still_growing, too_short,
+    Change, at_the_end, by_changes, energy_of_remainder, jumps, restitution_per_impulse, still_growing, too_short,
     with_one_remainder_mode, with_softer_remainder,
 };
 use super::pose::{Pose, Source};
@@ -150,6 +151,8 @@ struct Rungs {
     last: Rung,
     /// Restitution per impulse (1/(N s)).
     per_impulse: f64,
+    /// Whether the contact force jumps at first touch.
+    jumps: bool,
     /// The number of modes, if there is one, that makes up the whole static compliance.
     complete: Option<usize>,
     /// The number of modes with which the impact reached a limit of steps.
@@ -211,12 +214,11 @@ impl Rungs {
     /// Estimated change by the truncated modes, if it is known.
     fn left_out(&self) -> f64 {
         let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
-        let mut changes = self.changes().map(|(change, _)| change);
-        match changes.next() {
-            _ if self.is_complete() => 0.0,
-            None => 1.0,
-            Some(latest) => latest.left_out(changes.next()).max(self.last.energy).max(shape) + compliance,
+        let changes: Vec<(f64, usize)> = self.changes().map(|(change, [_, to])| (change.size(), to)).collect();
+        if self.is_complete() {
+            return 0.0;
         }
+        by_changes(&changes, self.jumps).max(self.last.energy).max(shape) + compliance
     }
 
     /// The same where the numbers of modes end before the restitution has converged.
@@ -261,7 +263,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let mut tightened = 0;
     let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
     let per_impulse = restitution_per_impulse(&first.impact);
-    let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, complete, too_many: None };
+    let jumps = jumps(&pose.law, &pose.striker);
+    let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, jumps, complete, too_many: None };
     loop {
         let count = rungs.last.count;
         if rungs.last.takes_too_many_steps() && (count > 1 || !rungs.earlier.is_empty()) {
@@ -279,7 +282,10 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
             rungs.add_earlier(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
         }
-        if is_plate && rungs.near().count() == 2 && rungs.solver() + rungs.left_out() <= tolerance && !several_contacts
+        if (is_plate || jumps)
+            && rungs.near().count() == 2
+            && rungs.solver() + rungs.left_out() <= tolerance
+            && !several_contacts
         {
             // the smallest of three
             let before = rungs.earlier.len() - 1;
