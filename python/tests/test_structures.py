@@ -655,7 +655,7 @@ def test_numbers_of_a_matrix_file_are_read_whole_or_refused(tmp_path):
         (tmp_path / name).write_bytes(mass if isinstance(mass, bytes) else mass.encode())
         return structures.from_matrices(tmp_path / "stiffness.mtx", tmp_path / name, {"p": 1}, 1).omega_rad_s[0]
 
-    whole = head + "2 2 2\n1 1 5.0e-1\n2 2 5.0e-1"
+    whole = head + "2 2 2\n1 1 5.0e-1\n2 2 5.0e-1\n"
     exact = math.sqrt(1e5 / 0.5 * (3 - math.sqrt(5)) / 2)
     for mass, name in [(whole, "mass.mtx"), (whole.replace("5.0e-1", ".5"), "mass.mtx"), (gzip.compress(whole.encode()), "mass.mtx.gz")]:
         assert read(mass, name) == pytest.approx(exact, rel=1e-9)
@@ -664,13 +664,18 @@ def test_numbers_of_a_matrix_file_are_read_whole_or_refused(tmp_path):
         (whole.replace("e-", "D-"), "mass.mtx, line 4: '5.0D-1' is not allowed"),
         (whole.replace("e-", "-"), "mass.mtx, line 4: '5.0-1' is not allowed"),
         (whole.replace("5.0e-1", "0,5"), "mass.mtx, line 4: '0,5' is not allowed"),
-        (whole[:-1], "mass.mtx, line 5: '5.0e-' is not allowed"),
-        (whole[:-6], "mass.mtx is not a whole Matrix Market file"),
-        (whole[:-10], "mass.mtx is not a whole Matrix Market file"),
+        (whole[:-2], "mass.mtx, line 5: '5.0e-' is not allowed"),
+        (whole[:-7], "mass.mtx is not a whole Matrix Market file"),
+        (whole[:-11], "mass.mtx is not a whole Matrix Market file"),
+        # a file that is cut within a number may end with another number
+        (whole[:-4], "mass.mtx is not a whole Matrix Market file: line 5, '2 2 5.0', must end with a line break"),
+        (head.replace("real", "pattern") + "2 2 2\n1 1\n2 2\n", "mass.mtx, line 1: pattern is not allowed; it must be real"),
         ("1 2 3", "mass.mtx is not a Matrix Market file"),
     ]:
         with pytest.raises(ValueError, match=told):
             read(mass)
+    with pytest.raises(ValueError, match="mass.mtx.gz is not a whole compressed file"):
+        read(gzip.compress(whole.encode())[:-9], "mass.mtx.gz")
     with pytest.raises(ValueError, match="mass is not allowed; it must have an entry other than 0"):
         structures.from_matrices(np.eye(3), np.zeros((3, 3)), {"p": 0}, 1)
     with pytest.raises(ValueError, match="every degree of freedom has stiffness or mass"):

@@ -17,6 +17,7 @@ from __future__ import annotations
 import bz2
 import gzip
 import re
+import zlib
 from collections.abc import Mapping, Sequence
 from io import BytesIO
 from os import PathLike, fspath
@@ -161,13 +162,25 @@ def _read(path: str | PathLike[str]) -> Any:
 
     content = Path(path).read_bytes()
     unpack = {".gz": gzip.decompress, ".bz2": bz2.decompress}.get(Path(path).suffix)
-    content = unpack(content) if unpack else content
+    try:
+        content = unpack(content) if unpack else content
+    except (EOFError, OSError, ValueError, zlib.error) as error:
+        raise ValueError(f"{fspath(path)} is not a whole compressed file: {error}") from error
     if not content.lower().startswith(b"%%matrixmarket"):
         raise ValueError(f"{fspath(path)} is not a Matrix Market file: it must begin with %%MatrixMarket")
     numbers = re.sub(r"^[ \t]*%.*$", "", content.decode("ascii", errors="replace"), flags=re.MULTILINE)
     if wrong := _NO_NUMBER.search(numbers):
         line = 1 + numbers.count("\n", 0, wrong.start())
         raise ValueError(f"{fspath(path)}, line {line}: {wrong[0]!r} is not allowed; it must be a number, such as 1.5e+03")
+    if b"pattern" in content.splitlines()[0].lower().split():
+        raise ValueError(f"{fspath(path)}, line 1: pattern is not allowed; it must be real, integer or complex, with the values of the entries")
+    # 1.5e+03 that is cut to 1.5e+0 is a number as well, and programs end each line.
+    if not numbers[-1:].isspace():
+        line, last = 1 + numbers.count("\n"), numbers.rpartition("\n")[2]
+        raise ValueError(
+            f"{fspath(path)} is not a whole Matrix Market file: line {line}, {last!r}, must end with a line break, without which its last "
+            "number may be cut"
+        )
     try:
         return mmread(BytesIO(content + b"\n"))
     except ValueError as error:
