@@ -39,7 +39,8 @@ def test_an_impact_is_plotted(scene, pyplot):
     for found in (with_history, vibroimpact.simulate(scene)):
         motion, force = found.plot().axes
         np.testing.assert_array_equal(force.lines[0].get_ydata(), with_history.history["force_n"])
-        np.testing.assert_array_equal(motion.lines[0].get_ydata(), 1e3 * with_history.history["striker_displacement_m"])
+        # without a gap at the start, the surface of the striker moves as the striker
+        np.testing.assert_allclose(motion.lines[0].get_ydata(), 1e3 * with_history.history["striker_displacement_m"], atol=1e-15)
         assert "restitution 0.1" in motion.get_title()
     with pytest.raises(ValueError, match="the model emoc has no motion in time"):
         vibroimpact.simulate(scene | {"model": "emoc", "modes": "auto"}).plot()

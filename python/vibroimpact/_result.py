@@ -61,7 +61,8 @@ class Impact(Result):
             raise ValueError(f"nothing to plot: the model {self['choice']['model']} has no motion in time")
         figure, (motion, force) = _subplots(2, 1, sharex=True)
         time_ms = 1e3 * history["time_s"]
-        motion.plot(time_ms, 1e3 * history["striker_displacement_m"], label="striker")
+        # the surface of the striker, which may begin at a distance from the structure
+        motion.plot(time_ms, 1e3 * (history["structure_displacement_m"] - history["compression_m"]), label="striker")
         motion.plot(time_ms, 1e3 * history["structure_displacement_m"], label="structure")
         motion.set(ylabel="displacement (mm)", title=self._headline())
         motion.legend()

@@ -24,7 +24,7 @@ pub struct Deflection {
     pub time_s: Vec<f64>,
     /// Displacement of the structure (m): for each time one number for each location.
     pub structure_m: Vec<Vec<f64>>,
-    /// Displacement of the striker (m).
+    /// Displacement of the striker's surface (m), from the surface of the undeformed structure.
     pub striker_m: Vec<f64>,
     /// Contact force at these times (N), between which whole contacts may lie.
     pub force_n: Vec<f64>,
@@ -74,7 +74,7 @@ impl Resolved {
         };
         Ok(Some(Deflection {
             structure_m: time_s.iter().map(at).collect(),
-            striker_m: samples.iter().map(|sample| sample.striker_displacement_m).collect(),
+            striker_m: samples.iter().map(|sample| sample.striker_surface_m()).collect(),
             force_n: samples.iter().map(|sample| sample.force_n).collect(),
             location_m,
             time_s,

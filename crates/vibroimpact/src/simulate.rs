@@ -1,5 +1,7 @@
 //! Solves a scene by the solver for its structure.
 
+use std::f64::consts::TAU;
+
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Scale};
 use vibroimpact_sim::modal::{History, Settings, Structure};
@@ -136,16 +138,27 @@ impl Simulation {
 
 impl Resolved {
     /// End of tables and figures (s), with the requested end `wanted` or the default. After the bodies have separated for good
-    /// their motion is free and known for all times; after a computation that stopped, or in sustained contact, it is not.
+    /// their motion is free and known for all times; after a computation that stopped, or in sustained contact, it is not. If the
+    /// bodies never meet, the default is a period of the slowest vibration, because the computation may show so at the start.
     pub fn until_s(&self, wanted: Option<f64>) -> f64 {
         let known_s = self.history.duration_s();
         match (self.summary.outcome, wanted) {
             ("rebound" | "no contact", Some(wanted)) => wanted,
-            ("rebound" | "no contact", None) => known_s * (1.0 + AFTERMATH),
+            ("rebound", None) => known_s * (1.0 + AFTERMATH),
+            ("no contact", None) => known_s.max(self.longest_period_s().unwrap_or(AT_REST_S)),
             (_, wanted) => wanted.map_or(known_s, |wanted| wanted.min(known_s)),
         }
+    }
+
+    /// The longest period of the modes that vibrate at the start (s); `None` if none does.
+    fn longest_period_s(&self) -> Option<f64> {
+        let modes = self.impact.structure.modes.iter().zip(self.history.modal_energies_j(0.0));
+        let vibrates = modes.filter(|(mode, energy_j)| mode.omega_rad_s > 0.0 && *energy_j > 0.0);
+        vibrates.map(|(mode, _)| TAU / mode.omega_rad_s).max_by(f64::total_cmp)
     }
 }
 
 /// Extent of tables and figures after the last separation, as a share of the time until then.
 const AFTERMATH: f64 = 0.1;
+/// The same if nothing vibrates and the bodies never meet (s).
+const AT_REST_S: f64 = 1.0;

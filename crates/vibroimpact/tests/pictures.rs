@@ -3,6 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use vibroimpact::Scene;
+use vibroimpact::simulate::Simulation;
+
 use crate::program::{run, stdout};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes");
@@ -40,6 +43,33 @@ fn simulate_draws_and_reports_every_kind_of_scene() {
         assert_eq!(fs::read_to_string(folder.path().join("a/b.svg")).unwrap(), svg);
         assert_eq!(fs::read_to_string(folder.path().join("r.html")).unwrap(), html);
     }
+}
+
+/// A string swings below a striker that it does not reach: its first mode at 50 Hz.
+#[test]
+fn without_contact_a_period_is_drawn_and_the_striker_at_its_distance() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"
+        location_m = 0.5
+        modes = 4
+        structure = { kind = "string", length_m = 1, tension_n = 100, mass_per_length_kg_m = 0.01, damping_ratio = 0.01 }
+        start = { gap_m = 1e-3, moving_modes = [{ mode = 1, velocity_m_s = 0.1 }] }
+        striker = { mass_kg = 0.001, speed_m_s = 0 }
+        contact = { law = "hertz", stiffness_n_m1_5 = 1e7 }
+    "#;
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    stdout(&run(folder.path(), &["simulate", "s.toml", "--out", "o", "--animate", "a.svg"]));
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(!read("a.svg").contains("NaN"));
+    for table in ["o/history.csv", "o/modal_energies.csv"] {
+        let last_s: f64 = read(table).lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+        assert!((last_s - 0.02).abs() < 1e-9, "{table} ends at {last_s} s");
+    }
+    let scene = Scene::from_toml(scene).unwrap();
+    let found = scene.simulate().unwrap();
+    let Simulation::Modal(resolved) = &found else { panic!("a string has modes") };
+    let deflection = resolved.deflection(&found.scene(&scene), resolved.until_s(None), [10, 10]).unwrap().unwrap();
+    assert!(deflection.striker_m.iter().all(|place_m| (place_m - 1e-3).abs() < 1e-15), "{:?}", deflection.striker_m);
 }
 
 #[test]

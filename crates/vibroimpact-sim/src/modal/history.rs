@@ -29,6 +29,14 @@ pub struct Sample {
     pub force_n: f64,
 }
 
+impl Sample {
+    /// Where the striker's surface is (m), counted like its displacement, but from the surface of the undeformed structure: the
+    /// displacement of the striker plus its distance at the start.
+    pub fn striker_surface_m(&self) -> f64 {
+        self.structure_displacement_m - self.compression_m
+    }
+}
+
 /// The energy balance (J).
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyLedger {

@@ -19,8 +19,9 @@ const OVERLAID: usize = 6;
 const LEAST_MODAL_ENERGY: f64 = 1e-6;
 
 /// Displacements, velocities, force and energies until `until_s`; below, each contact over its own duration, and the final energy
-/// of each mode. Grey stripes are the times in contact; numbers are those of the contacts in the summary. The velocities are
-/// those of the striker, unless it is a stop, and of the structure at the contact.
+/// of each mode. Grey stripes are the times in contact; numbers are those of the contacts in the summary. The striker's
+/// displacement is that of its surface, which begins at its distance from the structure. The velocities are those of the striker,
+/// unless it is a stop, and of the structure at the contact.
 ///
 /// ```
 /// use vibroimpact::simulate::Simulation;
@@ -54,7 +55,7 @@ pub fn impact(title: &str, resolved: &Resolved, until_s: f64) -> Figure {
     let moving = impact.striker.mass_kg.is_finite();
     let displacement = panel("displacement", "m", 130.0)
         .with(Series::line(&time, &column(|s| s.structure_displacement_m)).label(structure).colour(Colour::Vermilion))
-        .with(Series::line(&time, &column(|s| s.striker_displacement_m)).label(striker).colour(Colour::Blue));
+        .with(Series::line(&time, &column(Sample::striker_surface_m)).label(striker).colour(Colour::Blue));
     let line = Series::line(&time, &column(|s| s.structure_velocity_m_s)).line_width(0.8);
     let mut velocity = panel("velocity", "m/s", 100.0)
         .with(Series::horizontal_rule(0.0))
