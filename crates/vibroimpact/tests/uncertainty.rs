@@ -536,3 +536,26 @@ fn stated_modes_with_remainder_modes_agree_by_accident() {
         assert!(error < stated && stated < 30.0 * error, "{error:e} {stated:e}");
     }
 }
+
+/// Two modes of a beam under a very heavy striker: the impact with four modes and remainder modes takes more steps than are allowed,
+/// and under a heavier striker that with two modes and remainder modes does too.
+#[test]
+fn a_comparison_that_stops_is_no_uncertainty_of_1() {
+    let beside = |mass_kg: f64| {
+        let scene = json!({
+            "structure": { "kind": "beam", "theory": "euler-bernoulli", "ends": ["pinned", "pinned"], "damping_ratio": 0.01,
+                           "segments": [{ "length_m": 1, "width_m": 0.012, "thickness_m": 0.003, "material": "steel" }] },
+            "striker": { "mass_kg": mass_kg, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e8 },
+            "location_m": 0.3, "modes": 2
+        });
+        let found = answer(&Scene::from_value(&scene).unwrap());
+        assert_eq!(found.outcome, "rebound");
+        (found.uncertainty.modes_left_out, found.not_known)
+    };
+    let (estimate, _) = beside(3e5);
+    assert!(estimate.is_some_and(|estimate| estimate > 0.0 && estimate < 1e-3), "{estimate:?}");
+    let (estimate, why) = beside(1e6);
+    let told =
+        "modes left out: the impact with 2 modes, and remainder modes for the others, stopped before it ended (steps)";
+    assert!(estimate.is_none() && why.iter().any(|why| why == told), "{estimate:?} {why:?}");
+}

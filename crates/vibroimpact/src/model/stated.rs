@@ -19,9 +19,12 @@
 //! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact that
 //! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
 //! their number, and a small change from so few further modes may be an accident.
+//!
+//! More modes take more and shorter steps, or have further contacts, so that the impact with more modes may stop where the stated one
+//! does not. `M` is then the number of the stated modes; if that stops as well, nothing is known about the truncated modes.
 
-use vibroimpact_sim::both;
 use vibroimpact_sim::modal::{Settings, Solution};
+use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
@@ -32,6 +35,7 @@ use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
+use crate::text::counted;
 
 /// The comparison begins with the expected number of modes for this tolerance.
 const LOOSE: f64 = 3e-3;
@@ -120,6 +124,14 @@ impl Other {
             Other::Solved(other, _) => other,
         }
     }
+
+    /// Why it stopped before its end, if it did; the impact itself has not.
+    fn stopped_by(&self) -> Option<StopReason> {
+        match self {
+            Other::Itself => None,
+            Other::Solved(other, _) => other.outcome.stopped_by(),
+        }
+    }
 }
 
 impl Compared {
@@ -168,6 +180,23 @@ fn compare(
         None => needed(scene, LOOSE, kept, cost)?.unwrap_or(count),
     };
     let more = needed.clamp(count, affordable).min(most);
+    match compare_with(scene, kept, impact, [count, more, most], cost)? {
+        // with a motion before the impact, a comparison with as many modes shows nothing
+        Err(_) if more > count && scene.start.is_none() => {
+            compare_with(scene, kept, impact, [count, count, most], cost)
+        }
+        compared => Ok(compared),
+    }
+}
+
+/// As [`compare`], with `more` modes in place of the stated `count`, of the `most` that there are.
+fn compare_with(
+    scene: &Scene,
+    kept: &mut Kept,
+    impact: &Impact,
+    [count, more, most]: [usize; 3],
+    cost: &mut Cost,
+) -> Result<Result<Compared, String>, InvalidInput> {
     let fewer = match &scene.start {
         // the motion before the impact may need all stated modes
         Some(_) if count < most => fewer(more).max(count),
@@ -186,12 +215,18 @@ fn compare(
         Ok((Other::Solved(solution, energy), complete(&other)))
     };
     let (richer, nothing_left) = with(more)?;
+    if let Some(reason) = richer.stopped_by() {
+        return Ok(Err(not_compared(more, reason)));
+    }
     if nothing_left {
         return Ok(Ok(Compared { richer, fewer: None, softer: None }));
     }
-    let Ok((fewer, _)) = with(fewer) else {
+    let Ok((other, _)) = with(fewer) else {
         return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
     };
+    if let Some(reason) = other.stopped_by() {
+        return Ok(Err(not_compared(fewer, reason)));
+    }
     let uncertain_m_n = match &scene.structure {
         Structure::Plate(_) => scene.structure.static_compliance_with_uncertainty_m_n(scene.place())?.1,
         _ => 0.0,
@@ -199,11 +234,21 @@ fn compare(
     let softer = if uncertain_m_n > 0.0 {
         let other = posed(&with_modes(scene, count, more), kept)?;
         let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
-        Some(solve(&Impact { structure, settings, ..other }, kept, cost)?)
+        let solution = solve(&Impact { structure, settings, ..other }, kept, cost)?;
+        if let Some(reason) = solution.outcome.stopped_by() {
+            return Ok(Err(not_compared(more, reason)));
+        }
+        Some(solution)
     } else {
         None
     };
-    Ok(Ok(Compared { richer, fewer: Some(fewer), softer }))
+    Ok(Ok(Compared { richer, fewer: Some(other), softer }))
+}
+
+/// Why the effect of the truncated modes is not known if the impact with this many modes stops.
+fn not_compared(modes: usize, reason: StopReason) -> String {
+    let (modes, reason) = (counted(modes as u64, "mode", "modes"), reason.as_str());
+    format!("the impact with {modes}, and remainder modes for the others, stopped before it ended ({reason})")
 }
 
 fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
