@@ -5,13 +5,13 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
 use vibroimpact_sim::assembly::Interval;
 
 use super::report;
 use super::summary::Summary;
 use super::watch::Row;
 use super::{AssemblyScene, Course, Simulation, pictures};
+use crate::export::aside::Aside;
 use crate::export::{Failure, Table};
 use crate::sweep::table::{Kind, Table as Parquet};
 
@@ -31,7 +31,7 @@ const INTERVALS: [(&str, Kind); 9] = [
 /// The files with all intervals during a run. They appear under their names when the run has ended.
 pub struct IntervalFiles {
     folder: PathBuf,
-    aside: TempDir,
+    aside: Aside,
     names: Vec<String>,
     counts: Vec<u64>,
     csv: csv::Writer<BufWriter<File>>,
@@ -65,7 +65,7 @@ impl IntervalFiles {
     /// A folder or file that cannot be written.
     pub fn create(folder: &Path, names: &[String]) -> Result<IntervalFiles, Failure> {
         fs::create_dir_all(folder).map_err(blame(folder))?;
-        let aside = TempDir::new_in(folder).map_err(blame(folder))?;
+        let aside = Aside::new_in(folder).map_err(blame(folder))?;
         let file = File::create(aside.path().join(CSV)).map_err(blame(folder))?;
         let mut csv = csv::Writer::from_writer(BufWriter::new(file));
         csv.write_record(INTERVALS.map(|(name, _)| name))?;

@@ -4,8 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use tempfile::TempDir;
-
+use super::aside::Aside;
 use super::{Failure, history, modal_energies};
 use crate::plot::Figure;
 use crate::simulate::Resolved;
@@ -77,7 +76,7 @@ impl Files {
     pub fn write(&self, folder: &Path) -> Result<(), Failure> {
         let blame = |error: std::io::Error| format!("cannot write to {}: {error}", folder.display());
         fs::create_dir_all(folder).map_err(blame)?;
-        let aside = TempDir::new_in(folder).map_err(blame)?;
+        let aside = Aside::new_in(folder).map_err(blame)?;
         for (name, content) in &self.files {
             fs::write(aside.path().join(name), content).map_err(blame)?;
         }

@@ -1,6 +1,8 @@
 //! Results for programs: histories as tables, the result as JSON, and the files of one impact.
 
 #[cfg(feature = "files")]
+pub(crate) mod aside;
+#[cfg(feature = "files")]
 mod files;
 
 use std::error::Error;
