@@ -97,6 +97,16 @@ fn all_results_have_one_form_and_every_key_is_documented() {
     }
 }
 
+/// The compliance of no remainder modes is an empty sum, which is -0 for floating-point numbers.
+#[test]
+fn nothing_is_zero_without_a_sign() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["measured-modes", "linear-stop"] {
+        let found = simulate(folder.path(), &scene(name), &[]).to_string();
+        assert!(!found.contains("-0.0,") && !found.contains("-0.0}"), "{name}: {found}");
+    }
+}
+
 #[test]
 fn contacts_on_an_infinite_beam_balance_the_strikers_momentum() {
     let folder = tempfile::tempdir().unwrap();

@@ -125,7 +125,7 @@ impl Structure {
 pub(crate) fn compliance(modes: &[Mode]) -> f64 {
     let elastic = modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
     // summed from the smallest term: the remainder is the small difference from the whole, and decisive for a light striker
-    elastic.rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
+    elastic.rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).fold(0.0, |sum, one| sum + one)
 }
 
 #[cfg(test)]
