@@ -33,6 +33,10 @@ fn simulate_draws_and_reports_every_kind_of_scene() {
             assert!(svg.contains(part), "{part} in the picture of {name}");
         }
         let html = fs::read_to_string(folder.path().join("r.html")).unwrap();
+        // what is printed about the accuracy is in the report, too
+        for part in ["how far to trust it", "modes left out"].into_iter().filter(|part| printed.contains(part)) {
+            assert!(html.to_lowercase().contains(part), "{part} in the report of {name}");
+        }
         for part in ["<svg", "How to repeat this", "Contacts", "What was modelled", env!("CARGO_PKG_VERSION")] {
             assert!(html.contains(part), "{part} in the report of {name}");
         }

@@ -131,7 +131,7 @@ fn result(
         products.write(
             printed,
             figure,
-            |figure| report::of_infinite_impact(headline, scene, &summary, figure),
+            |figure| report::of_infinite_impact(headline, scene, trust, &summary, figure),
             || files(json, solution, scale, until, &figure()),
         )
     })

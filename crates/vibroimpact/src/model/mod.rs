@@ -45,6 +45,8 @@ pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;
 pub use plan::{Estimate, Plan};
+#[cfg(feature = "files")]
+pub(crate) use text::parts_in_words;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
 pub use uncertainty::Uncertainty;
 

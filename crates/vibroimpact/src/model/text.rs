@@ -44,16 +44,22 @@ fn meaning(part: &str) -> &'static str {
     }
 }
 
-/// The parts of the uncertainty, and those that are not known.
+/// The names of the parts of the uncertainty, and their sizes and meanings, or why they are not known.
+pub(crate) fn parts_in_words(answer: &Answer) -> Vec<(&'static str, String)> {
+    let told = |(name, part): (&'static str, Option<f64>)| {
+        let why = answer.not_known.iter().find_map(|why| why.strip_prefix(name)?.strip_prefix(": "));
+        let told = match part {
+            Some(part) => format!("{}: {}", small(part), meaning(name)),
+            None => format!("not known: {}", why?),
+        };
+        Some((name, told))
+    };
+    answer.uncertainty.parts().into_iter().filter_map(told).collect()
+}
+
 fn parts(answer: &Answer) -> String {
     let mut text = String::new();
-    for (name, part) in answer.uncertainty.parts() {
-        let why = answer.not_known.iter().find_map(|why| why.strip_prefix(name)?.strip_prefix(": "));
-        let told = match (part, why) {
-            (Some(part), _) => format!("{}: {}", small(part), meaning(name)),
-            (None, Some(why)) => format!("not known: {why}"),
-            (None, None) => continue,
-        };
+    for (name, told) in parts_in_words(answer) {
         let _ = writeln!(text, "    {name:<20}{}", wrapped(&told, 24));
     }
     if text.is_empty() { text } else { format!("  uncertainty\n{text}") }

@@ -5,7 +5,7 @@ use std::io;
 use super::{Report, literal};
 use crate::Impact;
 use crate::infinite;
-use crate::model::Answer;
+use crate::model::{Answer, parts_in_words};
 use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
@@ -35,6 +35,7 @@ pub fn of_impact(
     let Resolved { impact, summary, .. } = resolved;
     let mut report = begun(headline, Some(scene));
     report.table(&["result", ""], &result(impact, summary));
+    summary.choice.iter().for_each(|answer| uncertain(&mut report, answer));
     report.heading("What was modelled, and why");
     report.list(modelled);
     report.heading("The impact");
@@ -69,6 +70,14 @@ pub fn of_impact(
     Ok(report)
 }
 
+/// The parts of the uncertainty of a restitution.
+fn uncertain(report: &mut Report, answer: &Answer) {
+    let rows: Vec<Vec<String>> = parts_in_words(answer).into_iter().map(|(name, told)| row(name, told)).collect();
+    if !rows.is_empty() {
+        report.table(&["part of the uncertainty", ""], &rows);
+    }
+}
+
 /// Limits of the theories behind a result.
 pub(crate) fn trusted(report: &mut Report, trust: &[Check]) {
     if trust.is_empty() {
@@ -89,6 +98,7 @@ pub(crate) fn trusted(report: &mut Report, trust: &[Check]) {
 pub fn of_infinite_impact(
     headline: &str,
     scene: Option<&Scene>,
+    trust: &[Check],
     summary: &infinite::Summary,
     figure: &Figure,
 ) -> io::Result<Report> {
@@ -141,6 +151,7 @@ pub fn of_infinite_impact(
     let rows: Vec<Vec<String>> = rows.into_iter().take(LISTED).enumerate().map(numbered).collect();
     report.table(&["contact", "from", "to", "largest force"], &rows);
     more(&mut report, summary.contacts.len());
+    trusted(&mut report, trust);
     let command = match (scene, summary.s) {
         (None, Some(s)) => format!("vibroimpact infinite-beam --s {s}"),
         _ => "vibroimpact simulate scene.json".to_owned(),
@@ -161,11 +172,12 @@ pub fn of_net_impact(
     figure: &Figure,
 ) -> io::Result<Report> {
     let mut report = begun(headline, Some(scene));
-    let mut rows = vec![row("outcome", answer.outcome.to_owned())];
+    let mut rows = vec![row("outcome", stopped(answer.stopped_by).unwrap_or_else(|| answer.outcome.to_owned()))];
     if let Some(value) = answer.restitution {
         rows.push(row("restitution", format!("**{}**", restitution(value, answer.restitution_uncertainty))));
     }
     report.table(&["result", ""], &rows);
+    uncertain(&mut report, answer);
     report.heading("What was modelled, and why");
     report.list(&[
         format!("The model is {}.", literal(&answer.reason)),
