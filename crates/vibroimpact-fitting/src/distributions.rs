@@ -34,7 +34,7 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
     }
 }
 
-/// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1):
+/// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1, otherwise NaN):
 /// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. The degrees of freedom are at least 1 and need not be an integer. `None`
 /// stands for a known standard deviation, that is the normal variable.
 ///
@@ -43,6 +43,11 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
 /// assert!((fitting::two_sided_quantile(0.95, Some(10.0)) - 2.228139).abs() < 1e-6);
 /// ```
 pub fn two_sided_quantile(level: f64, freedom: Option<f64>) -> f64 {
+    match level {
+        1.0 => return f64::INFINITY,
+        0.0..1.0 => {}
+        _ => return f64::NAN,
+    }
     let Some(freedom) = freedom else { return std::f64::consts::SQRT_2 * puruspe::inverf(level) };
     let f = freedom.max(1.0);
     let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
@@ -52,6 +57,17 @@ pub fn two_sided_quantile(level: f64, freedom: Option<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{chi_square_tail, fisher_tail, two_sided_quantile};
+
+    #[test]
+    fn a_quantile_of_no_probability_is_no_number() {
+        for freedom in [None, Some(10.0)] {
+            for level in [-1.0, 1.5, f64::INFINITY, f64::NAN] {
+                assert!(two_sided_quantile(level, freedom).is_nan(), "{level} {freedom:?}");
+            }
+            assert_eq!(two_sided_quantile(1.0, freedom), f64::INFINITY);
+            assert!(two_sided_quantile(0.0, freedom).abs() < 1e-12);
+        }
+    }
 
     /// Force histories have thousands of values.
     #[test]
