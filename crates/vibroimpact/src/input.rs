@@ -49,17 +49,21 @@ pub(crate) struct Row {
 impl Table {
     /// Splits the text of a table; `needed` describes the expected table in messages.
     pub fn parse(bytes: &[u8], needed: &str) -> Result<Table, InvalidInput> {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let unreadable = |fault: csv::Error| {
-            let place =
-                fault.position().map_or_else(|| Step::Place("the table".to_owned()), |at| Step::Line(at.line()));
+            let line = |at: &csv::Position| Step::Line(1 + line_breaks(&bytes[..first_byte(bytes, at)]));
+            let place = fault.position().map_or_else(|| Step::Place("the table".to_owned()), line);
             InvalidInput::new(place, "text that is not UTF-8", needed)
         };
-        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut table = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
         let header = table.headers().map_err(unreadable)?.clone();
+        let (mut line, mut counted_to) = (1, 0);
         let row = |record: Result<StringRecord, csv::Error>| {
             let cells = record.map_err(unreadable)?;
-            Ok(Row { line: cells.position().map_or(0, |start| line_of(bytes, start)), cells })
+            let begins = cells.position().map_or(counted_to, |start| first_byte(bytes, start));
+            line += line_breaks(&bytes[counted_to..begins]);
+            counted_to = begins;
+            Ok(Row { line, cells })
         };
         let rows: Vec<Row> = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
         if let Some(row) = rows.iter().find(|row| row.cells.len() != header.len()) {
@@ -113,9 +117,14 @@ impl Row {
     }
 }
 
-/// The line of a record. The reader's line number refers to the end of the last record, before line breaks and empty lines.
-fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
-    let rest = usize::try_from(start.byte()).ok().and_then(|place| bytes.get(place..)).unwrap_or_default();
-    let passed = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();
-    start.line() + passed as u64
+/// Where a record begins. The reader's position is the end of the record before, before line breaks and empty lines.
+fn first_byte(bytes: &[u8], start: &csv::Position) -> usize {
+    let end = usize::try_from(start.byte()).map_or(bytes.len(), |place| place.min(bytes.len()));
+    end + bytes[end..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count()
+}
+
+/// The number of line breaks, of which each is `\n`, `\r\n`, or `\r` alone. The reader counts only those with `\n`.
+fn line_breaks(bytes: &[u8]) -> u64 {
+    let ends = |i: &usize| bytes[*i] == b'\n' || (bytes[*i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'));
+    (0..bytes.len()).filter(ends).count() as u64
 }

@@ -53,6 +53,8 @@ fn fit_takes_only_data_that_can_be_fitted() {
         (TABLE.replace("0.35", "-0.3"), "line 5, restitution = -0.3"),
         (TABLE.replace("0.4\n", "0.4,7\n"), "line 3 = 4 cells is not allowed"),
         (TABLE.replace(",0.4\n", "\n"), "line 3 = 2 cells is not allowed"),
+        // lines that end with a carriage return alone, as some spreadsheets write them
+        (TABLE.replace(",0.4\n", "\n").replace('\n', "\r"), "line 3 = 2 cells is not allowed"),
         (format!("{header}{}", "0.1,0.2,0.5\n".repeat(5)), "lines of data that differ in mass or location = 1"),
         (format!("{header}{}", "0.1,0.2,0.5\n0.2,0.2,0.5\n".repeat(5)), "differ in mass or location = 2"),
     ] {
