@@ -208,3 +208,14 @@ proptest! {
         }
     }
 }
+
+/// The parts of such an interval underflow to 0.
+#[test]
+fn the_shortest_interval_ends() {
+    for method in every_method(50) {
+        let decay = InitialValueProblem::new(vec![Equation::new(0.5, &[1.0])], |_, y, f| f[0] = -y[0]);
+        if let Ok(solution) = decay.solve(&method, 5e-324) {
+            assert_finite(&solution);
+        }
+    }
+}

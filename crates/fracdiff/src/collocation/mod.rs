@@ -178,7 +178,8 @@ impl March<'_, '_, '_> {
                     rejected_before = true;
                     // Next to the start of a segment a panel is too short only at underflow, elsewhere at the rounding of t.
                     let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-13 * reached };
-                    if length < smallest {
+                    // both are 0 on a segment whose parts underflow
+                    if length <= smallest {
                         let unresolved = Stop::NoConvergence { t: segment.start + reached };
                         let ahead = fault.filter(|f| f.time() >= segment.start + reached);
                         return Err(ahead.map_or(unresolved, Stop::from));
