@@ -228,26 +228,23 @@ fn small_changes_of_a_force_that_jumps_may_be_accidents() {
     }
 }
 
-/// A dashpot that is stiff for a light string needs short steps, the shorter the more modes there are: with the first number of modes
-/// the impact reaches the limit of steps, and the answer is that with fewer modes.
+/// A very heavy striker stays on a thin beam for many periods of its modes, and the more modes there are, the shorter is the least of
+/// them: with five modes the impact reaches the limit of steps, and the answer is that with fewer modes.
 #[test]
 fn where_more_modes_take_too_many_steps_fewer_give_the_answer() {
     let mut scene = json!({
-        "structure": { "kind": "string", "length_m": 0.65, "tension_n": 80, "mass_per_length_kg_m": 0.005, "damping_ratio": 0.01 },
-        "striker": { "mass_kg": 0.05, "speed_m_s": 1 },
-        "contact": { "law": "kelvin-voigt", "stiffness_n_m": 2e6, "damping_n_s_m": 2e3 },
-        "location_m": 0.25, "tolerance": 0.1
+        "structure": { "kind": "beam", "theory": "euler-bernoulli", "ends": ["pinned", "pinned"], "damping_ratio": 0.01,
+                       "segments": [{ "length_m": 1, "width_m": 0.012, "thickness_m": 0.003, "material": "steel" }] },
+        "striker": { "mass_kg": 2.5e5, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e8 },
+        "location_m": 0.3, "tolerance": 0.1
     });
     let found = answer(&scene);
-    assert!(found.settled && found.reason.contains("modes the impact takes more steps than are allowed"), "{found:?}");
-    scene["tolerance"] = json!(1e-4);
-    for modes in [8, 10] {
-        scene["modes"] = json!(modes);
-        scene["residual_compliance"] = json!(true);
-        let stated = answer(&scene);
-        let known = found.restitution_uncertainty.unwrap() + stated.restitution_uncertainty.unwrap();
-        assert!((found.restitution.unwrap() - stated.restitution.unwrap()).abs() < known, "{found:?} {stated:?}");
-    }
+    assert!(found.reason.contains("with 5 modes the impact takes more steps than are allowed"), "{found:?}");
+    (scene["modes"], scene["residual_compliance"]) = (json!(2), json!(true));
+    let stated = answer(&scene);
+    let known = found.restitution_uncertainty.unwrap();
+    assert!(found.modes > 2 && known < 0.05, "{found:?}");
+    assert!((found.restitution.unwrap() - stated.restitution.unwrap()).abs() < known, "{found:?} {stated:?}");
 }
 
 #[test]
