@@ -3,7 +3,9 @@
 
 use crate::common::Intervals;
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment, TautString};
-use contact_models::{Flores, Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
+use contact_models::{
+    Flores, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
@@ -317,6 +319,24 @@ fn a_ball_that_creeps_out_of_a_strong_dashpot_takes_few_steps() {
         let found = end.statistics.squared_force_n2_s;
         assert!((found - squared).abs() < 1e-6 * squared, "{found} {squared}");
     }
+}
+
+/// A ball moves away from a vibrating body that it overlaps, and the body presses it later. Lankarani and Nikravesh's law is a strong
+/// dashpot then. Its force falls to zero on steps in which the overlap changes by less than 1e-12 of itself.
+#[test]
+fn rounding_of_the_overlap_does_not_hide_where_the_force_of_a_dashpot_ends() {
+    let law = Law::from(LankaraniNikravesh::new(3e7, 0.2).unwrap());
+    let mode = BodyMode { omega_rad_s: 2400.0, damping_ratio: 0.0 };
+    let vibrating = Body { rate: vec![-0.25], ..Body::at_rest(vec![mode]) };
+    let sides = [on(0, &[0.4f64.sqrt().recip()]), on(1, &[-2.0])];
+    let assembly = Assembly {
+        bodies: vec![Body::mass(0.4, 0.0, 0.5), vibrating],
+        contacts: vec![Contact { sides, gap_m: -1.5e-4, law }],
+        loads: vec![],
+    };
+    let of = |tolerance: f64| run(&assembly, &Settings { tolerance, ..Settings::until(4e-3) }, &mut ()).unwrap();
+    let [coarse, fine] = [1e-9, 1e-12].map(|tolerance| of(tolerance).contacts[0].statistics.impulse_n_s);
+    assert!((coarse - fine).abs() < 1e-9 * fine, "{coarse} {fine}");
 }
 
 #[test]

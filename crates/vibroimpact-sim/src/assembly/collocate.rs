@@ -51,7 +51,7 @@ pub(crate) struct Mobility<'r> {
     pub rates: Option<&'r Matrix>,
 }
 
-/// Force (N), compression (m) and its rate (m/s; zero unless needed) at the nodes.
+/// Force (N), compression (m), its increase from the start (m) and its rate (m/s; zero unless needed) at the nodes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Collocated {
     pub force: Nodal,
@@ -59,6 +59,7 @@ pub(crate) struct Collocated {
     /// Nodal values of the polynomial that moves the modes.
     pub acting: Nodal,
     pub compression: Nodal,
+    pub moved: Nodal,
     pub rate: Nodal,
 }
 
@@ -107,6 +108,7 @@ impl Newton {
             ends: unknown.ends,
             acting: unknown.ends.acting(&unknown.guess),
             compression: [0.0; Q],
+            moved: [0.0; Q],
             rate: [0.0; Q],
         };
         found.clear();
@@ -185,7 +187,7 @@ fn follow<'r>(
                 }
             }
         }
-        found[c].rate = rate;
+        (found[c].moved, found[c].rate) = (moved, rate);
         found[c].compression = moved.map(|moved| unknown.start + moved);
     }
 }

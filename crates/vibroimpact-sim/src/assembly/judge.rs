@@ -34,7 +34,7 @@ impl<'a> March<'a> {
         contacts: &[usize],
         closed: usize,
         force: &[Legendre],
-        overlap: &[Nodal],
+        moved: &[Nodal],
         enclosed: bool,
     ) -> Judgement {
         let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
@@ -59,12 +59,12 @@ impl<'a> March<'a> {
                 );
             }
             let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| force[i].0[Q - 1].abs());
-            let noise = self.panel_noise(c, h);
+            let (noise, increase_noise) = self.panel_noise(c, h);
             let mut acceleration = None;
             let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
                 let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
-                let noise = noise * (per_overlap + MAGNIFIED * per_rate);
+                let noise = noise * per_overlap + MAGNIFIED * increase_noise * per_rate;
                 let function = EventFunction {
                     start,
                     nodal,
@@ -97,17 +97,17 @@ impl<'a> March<'a> {
             };
             match state.touch() {
                 Some(touch) => {
-                    let moved = || overlap[i].map(|overlap| overlap - state.overlap);
-                    let rates = if touch.ends_by_rate { slopes(0.0, &moved(), h) } else { [0.0; Q] };
+                    let rates = if touch.ends_by_rate { slopes(0.0, &moved[i], h) } else { [0.0; Q] };
                     for (which, boundary) in state.ends.iter().enumerate() {
-                        let nodal = std::array::from_fn(|n| boundary.margin(overlap[i][n], rates[n]));
+                        let nodal = std::array::from_fn(|n| boundary.margin(state.overlap + moved[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
                         ask(which, start, nodal, (boundary.per_compression, boundary.per_rate));
                     }
                 }
                 None => {
                     let touch_m = state.touch_m();
-                    ask(0, touch_m - state.overlap, overlap[i].map(|overlap| touch_m - overlap), (-1.0, 0.0));
+                    let nodal = moved[i].map(|moved| touch_m - (state.overlap + moved));
+                    ask(0, touch_m - state.overlap, nodal, (-1.0, 0.0));
                 }
             }
         }

@@ -276,7 +276,7 @@ impl<'a> March<'a> {
 
     /// Tests the event functions of a terminal panel, whose series need no enclosure.
     fn judge_landed(&mut self, window: &Window, landed: &Landed) -> Judgement {
-        self.judge(landed.length, &window.contacts, window.closed, &landed.force, &landed.overlap, false)
+        self.judge(landed.length, &window.contacts, window.closed, &landed.force, &landed.moved, false)
     }
 
     /// Error of the forces of a terminal panel relative to the allowed error.
@@ -293,8 +293,8 @@ impl<'a> March<'a> {
         self.show(landed.length, &contacts[..closed], &landed.force, &landed.solved);
         if self.wants_contact_work() {
             for (i, &c) in contacts[..closed].iter().enumerate() {
-                let (overlap, end) = (&landed.overlap[i], landed.end[i][0]);
-                self.contact_work_j += self.states[c].work_j(&landed.force[i], overlap, end);
+                let overlap = landed.moved[i].map(|moved| self.states[c].overlap + moved);
+                self.contact_work_j += self.states[c].work_j(&landed.force[i], &overlap, landed.end[i][0]);
             }
         }
         window.advance(self.system, landed, &mut self.amplitude, &mut self.rate);

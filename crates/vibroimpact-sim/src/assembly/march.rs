@@ -137,7 +137,7 @@ impl<'a> March<'a> {
             return self.refine(level + 1);
         }
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
-        let judgement = self.judge(h, contacts, closed, &trial.force, &trial.overlap, true);
+        let judgement = self.judge(h, contacts, closed, &trial.force, &trial.moved, true);
         if let Judgement::Meets(target, place) = judgement
             && place > 0.0
         {

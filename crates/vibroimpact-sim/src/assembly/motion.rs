@@ -20,7 +20,8 @@ use contact_models::{ContactLaw, Memory};
 /// A panel is doubled when its error is this many times below the tolerance.
 pub(super) const GROWTH: f64 = 250.0;
 
-/// Interpolation of a rate from the overlaps at the nodes, as for event functions, magnifies their rounding so many times.
+/// Interpolation of a rate from the increases of an overlap up to the nodes, as for event functions, magnifies their rounding so many
+/// times.
 pub(super) const MAGNIFIED: f64 = 50.0;
 
 /// On a panel an overlap hardly grows by more than this many times what the rate at its start would add.
@@ -226,8 +227,8 @@ impl<'a> March<'a> {
         4.0 * f64::EPSILON * (self.system.links[c].size(values) + beside)
     }
 
-    /// Rounding of an overlap as it is summed up over a panel of `h` (m).
-    pub(super) fn panel_noise(&self, c: usize, h: f64) -> f64 {
+    /// Rounding of an overlap as it is summed up over a panel of `h`, and of its increase alone (m).
+    pub(super) fn panel_noise(&self, c: usize, h: f64) -> (f64, f64) {
         let of = |Span { modes, psi }: &Span| {
             let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
             let [sum] = vectorized(
@@ -248,8 +249,8 @@ impl<'a> March<'a> {
         let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
         // the relative accuracy of the motion that corresponds to the contact's momentum is the same
-        let moved = moved.max(self.states[c].speed_m_s() * h);
-        tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
+        let increase = 4.0 * f64::EPSILON * moved.max(self.states[c].speed_m_s() * h);
+        (tracked + increase + 4.0 * f64::EPSILON * self.states[c].overlap.abs(), increase)
     }
 
     /// Rounding of the rate of an overlap anywhere on a panel (m/s): vibrations turn displacement into rate.

@@ -53,8 +53,8 @@ pub(crate) struct Landed {
     pub solved: Vec<Collocated>,
     pub force: Vec<Legendre>,
     moments: Vec<Series>,
-    /// Overlap of every contact of the window at the nodes.
-    pub overlap: Vec<Nodal>,
+    /// Increase of the overlap of every contact of the window from the start to the nodes.
+    pub moved: Vec<Nodal>,
     /// Overlap and its first two derivatives at the end.
     pub end: Vec<[f64; 3]>,
 }
@@ -108,12 +108,12 @@ impl Window {
 
     /// Finds the overlaps of contacts that were added after the panel was solved.
     pub fn look(&self, landed: &mut Landed) {
-        for c in landed.overlap.len()..self.free.len() {
-            let mut overlap = values(&self.free[c], landed.length);
+        for c in landed.moved.len()..self.free.len() {
+            let mut moved = increase(&self.free[c], landed.length);
             let kernels = &self.kernels[c * self.closed..(c + 1) * self.closed];
             let responses: Vec<Option<Matrix>> = kernels.iter().map(|kernel| response(kernel, landed.length)).collect();
-            respond(&mut overlap, &responses, &landed.solved);
-            landed.overlap.push(overlap);
+            respond(&mut moved, &responses, &landed.solved);
+            landed.moved.push(moved);
             let end = self.end(landed, c, landed.length);
             landed.end.push(end);
         }
@@ -129,9 +129,7 @@ impl Window {
     ) -> Option<Landed> {
         let (free, responses) = (self.free_at_nodes(length), self.responses(length));
         for (unknown, series) in unknowns.iter_mut().zip(&self.free) {
-            let mut moved = *series;
-            moved[0] = 0.0;
-            unknown.free = values(&moved, length);
+            unknown.free = increase(series, length);
             if let Some(rate) = &mut unknown.free_rate {
                 *rate = values(&slope(series), length);
             }
@@ -153,27 +151,27 @@ impl Window {
     }
 
     fn free_at_nodes(&self, length: f64) -> Vec<Nodal> {
-        self.free.iter().map(|series| values(series, length)).collect()
+        self.free.iter().map(|series| increase(series, length)).collect()
     }
 
     fn responses(&self, length: f64) -> Vec<Option<Matrix>> {
         self.kernels.iter().map(|kernel| response(kernel, length)).collect()
     }
 
-    /// The panel under known forces: the overlaps at the nodes and at the end.
+    /// The panel under known forces: the increases of the overlaps up to the nodes and the overlaps at the end.
     fn arrive(
         &self,
         length: f64,
         solved: Vec<Collocated>,
-        mut overlap: Vec<Nodal>,
+        mut moved: Vec<Nodal>,
         responses: &[Option<Matrix>],
     ) -> Landed {
         let force = solved.iter().map(|solved| Legendre::through(&solved.acting)).collect();
-        for (c, overlap) in overlap.iter_mut().enumerate() {
-            respond(overlap, &responses[c * self.closed..(c + 1) * self.closed], &solved);
+        for (c, moved) in moved.iter_mut().enumerate() {
+            respond(moved, &responses[c * self.closed..(c + 1) * self.closed], &solved);
         }
         let moments = solved.iter().map(|solved| self.moments(&solved.acting)).collect();
-        let mut landed = Landed { length, solved, force, moments, overlap, end: Vec::new() };
+        let mut landed = Landed { length, solved, force, moments, moved, end: Vec::new() };
         landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
         landed
     }
@@ -228,6 +226,7 @@ impl Window {
             ends: solved.ends,
             acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
             compression: carry(&solved.compression),
+            moved: carry(&solved.moved),
             rate: carry(&solved.rate),
         };
         let solved = from.solved.iter().map(carried).collect();
@@ -248,6 +247,13 @@ fn respond(overlap: &mut Nodal, responses: &[Option<Matrix>], solved: &[Collocat
 /// How many powers a series has; rigid bodies move along short ones.
 fn powers(series: &Series) -> usize {
     series.iter().rposition(|term| *term != 0.0).map_or(0, |last| last + 1)
+}
+
+/// The increase of a series from the start to the nodes of a panel of this length.
+fn increase(series: &Series, length: f64) -> Nodal {
+    let mut moved = *series;
+    moved[0] = 0.0;
+    values(&moved, length)
 }
 
 /// A series at the nodes of a panel of this length.

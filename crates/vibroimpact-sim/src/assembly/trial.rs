@@ -28,8 +28,8 @@ pub(super) struct Trial<'a> {
     /// The closed contacts' forces, at the nodes and as polynomials.
     pub solved: Vec<Collocated>,
     pub force: Vec<Legendre>,
-    /// All contacts' overlaps at the nodes, and at the end with their rates.
-    pub overlap: Vec<Nodal>,
+    /// Increases of all contacts' overlaps from the start to the nodes, and the overlaps at the end with their rates.
+    pub moved: Vec<Nodal>,
     pub end: Vec<(f64, f64)>,
     turns: Turns,
 }
@@ -38,7 +38,7 @@ impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
-        let Trial { contacts, closed, unknowns, free, solved, force, overlap, end, turns } = trial;
+        let Trial { contacts, closed, unknowns, free, solved, force, moved, end, turns } = trial;
         let closed = *closed;
         self.responses.prepare(self.system, self.tables, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
@@ -49,8 +49,8 @@ impl<'a> March<'a> {
         }
         free.clear();
         free.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
-        overlap.clear();
-        overlap.extend(free.iter().map(|(moved, _)| *moved));
+        moved.clear();
+        moved.extend(free.iter().map(|(moved, _)| *moved));
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| free[i], |c| self.begins(c)));
         let (system, responses) = (self.system, &*self.responses);
@@ -70,15 +70,14 @@ impl<'a> March<'a> {
             self.responses.prepare(self.system, self.tables, level, open, closed);
         }
         for &c in &contacts[closed..] {
-            let start = self.states[c].overlap;
-            overlap.push(self.free_at_nodes(level, c, turns).0.map(|moved| start + moved));
+            moved.push(self.free_at_nodes(level, c, turns).0);
         }
         let (system, tables, responses) = (self.system, self.tables, &*self.responses);
         let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]);
         end.clear();
         for (i, &c) in contacts.iter().enumerate() {
-            let nodal = &mut overlap[i];
-            let (moved, mut rate) = tables.free_at_end(level, &system.links[c], &self.amplitude, &self.rate);
+            let nodal = &mut moved[i];
+            let (free, mut rate) = tables.free_at_end(level, &system.links[c], &self.amplitude, &self.rate);
             let (by_loads, rate_of_loads) = self.loads.moved_on(c, (self.time_s, h), turns, Q);
             let mut forced = 0.0;
             for (j, solved) in solved.iter().enumerate() {
@@ -96,9 +95,9 @@ impl<'a> March<'a> {
                 }
             }
             if i < closed {
-                *nodal = solved[i].compression;
+                *nodal = solved[i].moved;
             }
-            end.push((self.states[c].overlap + (moved + by_loads + forced), rate + rate_of_loads));
+            end.push((self.states[c].overlap + (free + by_loads + forced), rate + rate_of_loads));
         }
         true
     }
