@@ -2,7 +2,8 @@
 
 use crate::common::{Bounded, ball, pinned, second_method, settings};
 use contact_models::{
-    After, Boundary, Branch, ContactLaw, Force, Hertz, Internal, Memory, Stage, boundaries, check_contract,
+    After, Boundary, Branch, ContactLaw, Force, Hertz, HuntCrossley, Internal, Memory, Stage, boundaries,
+    check_contract,
 };
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Solver};
@@ -99,4 +100,66 @@ fn dependence_on_the_rate_is_detected() {
     let error = (solution.restitution.unwrap() - second.velocity_m_s).abs();
     assert!(error < 1e-9, "{error:e}");
     assert_eq!(solution.sub_impacts.len(), second.touches_s.len());
+}
+
+/// The law of Hunt and Crossley with a branch for loading and one for unloading, each of which continues its force at a rate of zero
+/// without dependence on the rate.
+struct Sided;
+
+impl Sided {
+    const STIFFNESS_N_M: f64 = 1e7;
+    const DAMPING_S_M: f64 = 0.5;
+}
+
+impl ContactLaw for Sided {
+    fn touch(&self, _: &Memory, _: f64) -> Branch {
+        Branch { stage: Stage::Loading, anchor_m: 0.0, internal: Internal::NONE }
+    }
+
+    fn force(&self, branch: &Branch, xi: f64, rate: f64) -> Force {
+        let (low, high) = if branch.stage == Stage::Loading { (0.0, 1e3) } else { (-1e3, 0.0) };
+        let (pushes, moves) = (xi > 0.0, low < rate && rate < high);
+        let factor = 1.0 + Sided::DAMPING_S_M * rate.clamp(low, high);
+        let spring = Sided::STIFFNESS_N_M * xi.clamp(0.0, 1.0);
+        Force {
+            force_n: spring * factor,
+            per_compression_n_m: if pushes { Sided::STIFFNESS_N_M * factor } else { 0.0 },
+            per_rate_n_s_m: if moves { spring * Sided::DAMPING_S_M } else { 0.0 },
+        }
+    }
+
+    fn stored_energy_j(&self, _: &Branch, xi: f64) -> f64 {
+        0.5 * Sided::STIFFNESS_N_M * xi.clamp(0.0, 1.0).powi(2)
+    }
+
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        match (branch.stage, which) {
+            (_, 0) => Some(Boundary::compression_falls_to(0.0)),
+            (Stage::Loading, 1) => Some(Boundary::rate_falls_to(0.0)),
+            (_, 1) => Some(Boundary::rate_rises_to(0.0)),
+            _ => None,
+        }
+    }
+
+    fn cross(&self, branch: &Branch, which: usize, _: f64, _: f64) -> After {
+        let turned = if branch.stage == Stage::Loading { Stage::Unloading } else { Stage::Loading };
+        match which {
+            0 => After::Release(Memory::default()),
+            _ => After::Continue(Branch { stage: turned, ..*branch }),
+        }
+    }
+}
+
+/// Beyond its boundaries a branch is only continued, and tells nothing about the rate.
+#[test]
+fn dependence_on_the_rate_is_asked_within_the_branch() {
+    assert!(check_contract(&Sided, 1e-4, 1.0).is_ok());
+    let solver = Solver::new(&pinned(4, 0.02, 0.3)).unwrap();
+    let restitution = |law: &dyn ContactLaw| {
+        let solution = solver.solve(&ball(), law, None, &settings(1e-11)).unwrap();
+        solution.restitution.unwrap()
+    };
+    let whole = HuntCrossley::new(Sided::STIFFNESS_N_M, 1.0, Sided::DAMPING_S_M).unwrap();
+    let error = (restitution(&Sided) - restitution(&whole)).abs();
+    assert!(error < 1e-9, "{error:e}");
 }

@@ -223,8 +223,14 @@ impl<'a> March<'a> {
     fn depends_on_rate(&mut self, c: usize) -> bool {
         let (state, law) = (&self.states[c], self.law(c));
         let (Some(touch), Some((scale, speed))) = (state.touch(), state.scales()) else { return true };
+        // the branch begins on a boundary, beyond which the law only continues it
+        let beside = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(by_overlap, by_rate)| {
+            (state.overlap + by_overlap * NEAR * scale, state.rate + by_rate * NEAR * speed)
+        });
+        let within = |(overlap, rate): &(f64, f64)| state.ends.iter().all(|end| end.margin(*overlap, *rate) > 0.0);
+        let Some((overlap, rate)) = beside.into_iter().find(within) else { return true };
         self.counts.law_evaluations += 1;
-        let force = law.force(&touch.branch, state.overlap + NEAR * scale, speed);
+        let force = law.force(&touch.branch, overlap, rate);
         force.force_n == 0.0 || force.per_rate_n_s_m != 0.0
     }
 
