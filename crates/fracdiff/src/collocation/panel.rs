@@ -83,10 +83,7 @@ pub(crate) struct LocalRules {
 
 impl LocalRules {
     pub fn new(orders: &[f64], nodes: usize) -> LocalRules {
-        let rule = |&order: &f64| {
-            let exponent = order - 1.0;
-            (Power::new(exponent), order, Rule::jacobi(nodes + 6, exponent))
-        };
+        let rule = |&order: &f64| (Power::new(order - 1.0), order, Rule::jacobi(nodes + 6, order));
         LocalRules { rules: orders.iter().map(rule).collect() }
     }
 
@@ -101,7 +98,7 @@ impl LocalRules {
             for (i, &xi) in panel.nodes.iter().enumerate() {
                 let distance = xi - panel.x[0];
                 // t_i - s = (x_i - x) (x_i^q - x^q)/(x_i - x), x_i - x = distance * u
-                let scale = distance.powf(*order);
+                let scale = distance.powf(*order) / order;
                 for (&u, &weight) in rule.nodes.iter().zip(&rule.weights) {
                     let x = xi - distance * u;
                     let smooth = power.at(divided_power(xi, x, panel.mapping)) * panel.speed(x);

@@ -103,9 +103,9 @@ impl Assembly {
         // First element, eta from 0 to eta_1: the first hat is 1. With r = xi^(1/alpha) and the substitution r = r_1 u, the
         // integrands are smooth apart from the weight u^(alpha-1).
         let r1 = log_rate(0).exp();
-        let rule = Rule::jacobi(8, alpha - 1.0);
+        let rule = Rule::jacobi(8, alpha);
         for (&u, &w) in rule.nodes.iter().zip(&rule.weights) {
-            self.add(r1 * u, alpha * w * r1.powf(alpha), [(0, 1.0), (0, 0.0)]);
+            self.add(r1 * u, w * r1.powf(alpha), [(0, 1.0), (0, 0.0)]);
         }
         // Inner elements, in log r.
         let rule = Rule::legendre(24);
@@ -122,11 +122,11 @@ impl Assembly {
         // Last element: the last hat falls linearly to 0 at eta = 1, so it is (1 + r_N)/(1 + r). In v = r_N/r the
         // measure is alpha r_N^alpha v^(-alpha-1) dv; the factor 1/(1+r) ~ v leaves the weight v^(-alpha).
         let rn = log_rate(last).exp();
-        let rule = Rule::jacobi(24, -alpha);
+        let rule = Rule::jacobi(24, 1.0 - alpha);
         for (&v, &w) in rule.nodes.iter().zip(&rule.weights) {
             let r = rn / v;
             let hat = (1.0 + rn) / (1.0 + r);
-            self.add(r, alpha * rn.powf(alpha) * w / v, [(last, hat), (last, 0.0)]);
+            self.add(r, alpha / (1.0 - alpha) * rn.powf(alpha) * w / v, [(last, hat), (last, 0.0)]);
         }
         // D^alpha x has the factor 1/(Gamma(1-alpha) Gamma(1+alpha)), shared by the two c.
         let share = 1.0 / (tgamma(1.0 - alpha) * tgamma(1.0 + alpha)).sqrt();

@@ -35,10 +35,11 @@ impl ExponentialSum {
         InvalidInput::unless(tolerance_ok, "tolerance", tolerance, "a number from 1e-14 to 0.1")?;
         let digits = -tolerance.log10();
         let nodes = (2.0 + 0.85 * digits).ceil() as usize;
-        let scale = 1.0 / tgamma(exponent);
+        // 1/Gamma(e) is e/Gamma(1 + e), in which nothing overflows
+        let scale = 1.0 / tgamma(1.0 + exponent);
         let (mut rates, mut weights) = (Vec::new(), Vec::new());
         let mut upper = 1.0 / t_max;
-        let low = Rule::jacobi(nodes, exponent - 1.0);
+        let low = Rule::jacobi(nodes, exponent);
         for (&x, &w) in low.nodes.iter().zip(&low.weights) {
             rates.push(upper * x);
             weights.push(scale * w * upper.powf(exponent));
@@ -50,7 +51,7 @@ impl ExponentialSum {
             for (&x, &w) in rule.nodes.iter().zip(&rule.weights) {
                 let rate = upper * (1.0 + x);
                 rates.push(rate);
-                weights.push(scale * w * upper * rate.powf(exponent - 1.0));
+                weights.push(exponent * scale * w * upper * rate.powf(exponent - 1.0));
             }
             upper *= 2.0;
         }
@@ -98,7 +99,7 @@ mod tests {
 
     #[test]
     fn power_is_approximated_to_the_tolerance() {
-        for exponent in [0.05, 0.5, 0.95] {
+        for exponent in [5e-324, 1e-10, 0.05, 0.5, 0.95] {
             for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-13] {
                 let sum = ExponentialSum::power(exponent, 1e-6, 1e3, tolerance).unwrap();
                 for i in 0..=180 {

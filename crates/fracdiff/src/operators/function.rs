@@ -55,12 +55,11 @@ pub struct Estimate {
 ///
 /// # Errors
 ///
-/// [`InvalidInput`] for an order outside `0 < order <= 16`, a negative `t`, settings outside their ranges, or a value
-/// of `f` that is not finite.
+/// [`InvalidInput`] for an order outside `0 < order <= 16`, a negative `t`, settings outside their ranges, a value
+/// of `f` that is not finite, or a result that is too large for a number.
 pub fn integral(order: f64, f: impl Fn(f64) -> f64, t: f64, settings: &Quadrature) -> Result<Estimate, InvalidInput> {
     require_order(order)?;
-    let estimate = weighted(order, |s, _| f(s), t, settings)?;
-    Ok(estimate.scaled(1.0 / tgamma(order)))
+    weighted(order, |s, _| f(s), t, settings)?.scaled(1.0 / tgamma(order + 1.0), t)
 }
 
 /// The Caputo derivative of order `order` of a function, from its derivative `g` of order `order` rounded down: the function
@@ -96,8 +95,9 @@ pub fn caputo(order: f64, g: impl Fn(f64) -> f64, t: f64, settings: &Quadrature)
     let quotient = |s: f64, lag: f64| (end - g(s)) / lag;
     let rest = weighted(1.0 - a, quotient, t, settings)?;
     let boundary = (end - finite(g(0.0), 0.0)?) * t.powf(-a);
-    let value = boundary + a * rest.value;
-    Ok(Estimate { value, error: a * rest.error }.scaled(1.0 / tgamma(1.0 - a)))
+    // the mean times 1/(1 - a) is the integral, and (1 - a) Gamma(1 - a) = Gamma(2 - a)
+    let value = (1.0 - a) * boundary + a * rest.value;
+    Estimate { value, error: a * rest.error }.scaled(1.0 / tgamma(2.0 - a), t)
 }
 
 /// The Riemann-Liouville derivative: [`caputo`] and the terms of the initial values `f(0), f'(0), ...`, as many as `order`
@@ -119,12 +119,15 @@ pub fn riemann_liouville(
         InvalidInput::require_finite(("initial", k), value)?;
     }
     let count = initial.len().min(order.ceil() as usize);
-    Ok(Estimate { value: caputo.value + start_terms(order, &initial[..count], t), ..caputo })
+    Estimate { value: caputo.value + start_terms(order, &initial[..count], t), ..caputo }.scaled(1.0, t)
 }
 
 impl Estimate {
-    fn scaled(self, factor: f64) -> Estimate {
-        Estimate { value: factor * self.value, error: (factor * self.error).abs() }
+    /// The result at `t`, which is a number if this one, and its product with the factor, are.
+    fn scaled(self, factor: f64, t: f64) -> Result<Estimate, InvalidInput> {
+        let scaled = Estimate { value: factor * self.value, error: (factor * self.error).abs() };
+        let allowed = "a time at which the result is a finite number";
+        InvalidInput::unless(scaled.value.is_finite() && scaled.error.is_finite(), "t", t, allowed).map(|()| scaled)
     }
 }
 
@@ -136,7 +139,7 @@ fn finite(value: f64, t: f64) -> Result<f64, InvalidInput> {
     if value.is_finite() { Ok(value) } else { Err(InvalidInput::new(format!("f({t})"), value, "a finite value")) }
 }
 
-/// `int_0^t (t-s)^(order-1) f(s, t-s) ds` with rules of 8, 16, ... 256 nodes until two agree.
+/// `order int_0^t (t-s)^(order-1) f(s, t-s) ds` with rules of 8, 16, ... 256 nodes until two agree.
 fn weighted(order: f64, f: impl Fn(f64, f64) -> f64, t: f64, settings: &Quadrature) -> Result<Estimate, InvalidInput> {
     settings.check()?;
     require_time(t)?;
@@ -147,7 +150,7 @@ fn weighted(order: f64, f: impl Fn(f64, f64) -> f64, t: f64, settings: &Quadratu
     let mut last: Option<f64> = None;
     let mut estimate = Estimate { value: 0.0, error: f64::INFINITY };
     for nodes in [8, 16, 32, 64, 128, 256] {
-        let rule = Rule::jacobi(nodes, order - 1.0);
+        let rule = Rule::jacobi(nodes, order);
         let (mut sum, mut magnitude) = (0.0, 0.0);
         for (&u, &w) in rule.nodes.iter().zip(&rule.weights) {
             // s = t x^q with x = 1 - u, and 1 - x^q = u (1 + x + ... + x^(q-1))
@@ -210,6 +213,20 @@ mod tests {
         }
     }
 
+    /// `I^a` of `1 + t` is `t^a/Gamma(1 + a) (1 + t/(1 + a))`, and its derivative of the order `a` that of `t`, `t^(1-a)/Gamma(2-a)`.
+    #[test]
+    fn small_orders_lose_no_digits() {
+        let set = Quadrature::default();
+        for order in [5e-324, 1e-310, 1e-17, 1e-10, 1e-3] {
+            let got = integral(order, |s| 1.0 + s, 3.0, &set).unwrap().value;
+            let exact = 3f64.powf(order) / tgamma(1.0 + order) * (1.0 + 3.0 / (1.0 + order));
+            assert!((got / exact - 1.0).abs() < 1e-14, "I {order}: {got} {exact}");
+            let got = caputo(order, |s| 1.0 + s, 3.0, &set).unwrap().value;
+            let exact = 3f64.powf(1.0 - order) / tgamma(2.0 - order);
+            assert!((got / exact - 1.0).abs() < 1e-14, "C {order}: {got} {exact}");
+        }
+    }
+
     #[test]
     fn mapping_restores_accuracy_for_roots() {
         let exact = tgamma(1.5) / tgamma(2.0) * 3.0;
@@ -229,5 +246,8 @@ mod tests {
         assert!(caputo(f64::NAN, |_| 1.0, 1.0, &set).is_err());
         assert!(riemann_liouville(0.5, |_| 1.0, &[1.0], 0.0, &set).is_err());
         assert!(integral(0.5, |_| 1.0, 1.0, &Quadrature { mapping: 0, tolerance: 1e-9 }).is_err());
+        assert!(integral(2.0, |_| 1e300, 1e9, &set).is_err());
+        assert!(caputo(0.999, |s| s / 5e-324, 5e-324, &set).is_err());
+        assert!(riemann_liouville(1.5, |_| 1.0, &[1.0], 5e-324, &set).is_err());
     }
 }

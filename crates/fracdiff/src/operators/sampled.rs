@@ -16,11 +16,11 @@ const STENCIL: usize = 5;
 /// # Errors
 ///
 /// [`InvalidInput`] for an order outside `0 < order <= 16`, fewer than 2 samples, times and values of different
-/// number, times that do not ascend, or a number that is not finite.
+/// number, times that do not ascend, a number that is not finite, or samples whose result is too large for a number.
 pub fn integral_sampled(order: f64, times: &[f64], values: &[f64]) -> Result<Vec<f64>, InvalidInput> {
     require_order(order)?;
     require_samples(times, values, 2)?;
-    let scale = 1.0 / tgamma(order);
+    let scale = 1.0 / tgamma(order + 1.0);
     let mut out = vec![0.0];
     for n in 1..times.len() {
         let mut sum = 0.0;
@@ -34,6 +34,7 @@ pub fn integral_sampled(order: f64, times: &[f64], values: &[f64]) -> Result<Vec
         }
         out.push(scale * sum);
     }
+    require_representable(&out, values, 0)?;
     Ok(out)
 }
 
@@ -66,15 +67,17 @@ pub fn caputo_sampled(order: f64, times: &[f64], values: &[f64]) -> Result<Vec<f
     }
     let a = order - whole;
     if a == 0.0 {
+        require_representable(&samples, values, 0)?;
         return Ok(samples);
     }
-    let scale = 1.0 / tgamma(1.0 - a);
+    let scale = 1.0 / tgamma(2.0 - a);
     let mut out = vec![0.0];
     for n in 1..times.len() {
         let slope = |j: usize| (samples[j + 1] - samples[j]) / (times[j + 1] - times[j]);
         let weight = |j: usize| power_integral(times[n] - times[j], times[n] - times[j + 1], 1.0 - a);
         out.push(scale * (0..n).map(|j| slope(j) * weight(j)).sum::<f64>());
     }
+    require_representable(&out, values, 0)?;
     Ok(out)
 }
 
@@ -109,6 +112,7 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
     for (n, value) in out.iter_mut().enumerate() {
         *value += start_terms(order, if n == 0 { &lowest } else { &initial }, times[n] - times[0]);
     }
+    require_representable(&out, values, 1)?;
     Ok(out)
 }
 
@@ -118,8 +122,8 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
 ///
 /// # Errors
 ///
-/// [`InvalidInput`] for an order that is 0 or beyond 16 in magnitude, a step that is not positive, or a value that is
-/// not finite.
+/// [`InvalidInput`] for an order that is 0 or beyond 16 in magnitude, a step that is not positive, a value that is
+/// not finite, or values whose result is too large for a number.
 pub fn grunwald_letnikov(order: f64, step: f64, values: &[f64]) -> Result<Vec<f64>, InvalidInput> {
     let ok = order != 0.0 && order.abs() <= super::LARGEST_ORDER;
     InvalidInput::unless(ok, "order", order, "a number from -16 to 16 other than 0")?;
@@ -129,7 +133,10 @@ pub fn grunwald_letnikov(order: f64, step: f64, values: &[f64]) -> Result<Vec<f6
         return Ok(Vec::new());
     }
     let scale = step.powf(-order);
-    Ok(product(&binomial_series(order, values.len()), values, values.len()).iter().map(|v| scale * v).collect())
+    let mut out = product(&binomial_series(order, values.len()), values, values.len());
+    out.iter_mut().for_each(|v| *v *= scale);
+    require_representable(&out, values, 0)?;
+    Ok(out)
 }
 
 /// `(1 - z)^order`.
@@ -141,13 +148,13 @@ fn binomial_series(order: f64, count: usize) -> Vec<f64> {
     series
 }
 
-/// `int_near^far u^(p-1) du`, without cancellation for a short interval far away.
+/// `p int_near^far u^(p-1) du`, without cancellation for a short interval far away.
 fn power_integral(far: f64, near: f64, p: f64) -> f64 {
     let ratio = (far - near) / far;
-    if near <= 0.0 { far.powf(p) / p } else { -far.powf(p) * (p * (-ratio).ln_1p()).exp_m1() / p }
+    if near <= 0.0 { far.powf(p) } else { -far.powf(p) * (p * (-ratio).ln_1p()).exp_m1() }
 }
 
-/// `int_near^far u^(p-1) (u - near) du`.
+/// `p int_near^far u^(p-1) (u - near) du`.
 fn ramp_integral(far: f64, near: f64, p: f64) -> f64 {
     let h = far - near;
     if near > 20.0 * h {
@@ -155,11 +162,11 @@ fn ramp_integral(far: f64, near: f64, p: f64) -> f64 {
         let root = 0.6f64.sqrt();
         let at = |x: f64, w: f64| {
             let v = 0.5 * h * (1.0 + x);
-            w * 0.5 * h * (near + v).powf(p - 1.0) * v
+            w * 0.5 * h * p * (near + v).powf(p - 1.0) * v
         };
         return at(-root, 5.0 / 9.0) + at(0.0, 8.0 / 9.0) + at(root, 5.0 / 9.0);
     }
-    power_integral(far, near, p + 1.0) - near * power_integral(far, near, p)
+    p / (p + 1.0) * power_integral(far, near, p + 1.0) - near * power_integral(far, near, p)
 }
 
 /// Derivatives at the samples by the polynomial through the five nearest.
@@ -192,6 +199,15 @@ fn require_samples(times: &[f64], values: &[f64], least: usize) -> Result<(), In
     require_finite("values", values)?;
     match times.windows(2).position(|w| w[1] <= w[0]) {
         Some(i) => Err(InvalidInput::new(("times", i + 1), times[i + 1], "greater than the time before")),
+        None => Ok(()),
+    }
+}
+
+/// Results at the samples from the number `from` on, which overflow for values that are too large or times that are too close.
+fn require_representable(results: &[f64], values: &[f64], from: usize) -> Result<(), InvalidInput> {
+    let allowed = "a value with which the result at its time is a finite number";
+    match results.iter().skip(from).position(|v| !v.is_finite()) {
+        Some(i) => Err(InvalidInput::new(("values", from + i), values[from + i], allowed)),
         None => Ok(()),
     }
 }
@@ -263,6 +279,35 @@ mod tests {
             let back = grunwald_letnikov(-order, 0.1, &there).unwrap();
             assert!(values.iter().zip(back).all(|(a, b)| (a - b).abs() < 1e-9), "{order}");
         }
+    }
+
+    #[test]
+    fn small_orders_lose_no_digits() {
+        let times = graded(40);
+        let values: Vec<f64> = times.iter().map(|t| 1.0 + t).collect();
+        for a in [5e-324, 1e-310, 1e-17, 1e-10, 1e-3] {
+            let near = |got: f64, exact: f64| assert!((got / exact - 1.0).abs() < 1e-13, "{a}: {got} {exact}");
+            near(integral_sampled(a, &times, &values).unwrap()[40], of_power(-a, 0.0, 2.0) + of_power(-a, 1.0, 2.0));
+            near(caputo_sampled(a, &times, &values).unwrap()[40], of_power(a, 1.0, 2.0));
+            let both = riemann_liouville_sampled(a, &times, &values).unwrap();
+            assert_eq!(both[0], f64::INFINITY);
+            near(both[40], of_power(a, 0.0, 2.0) + of_power(a, 1.0, 2.0));
+        }
+    }
+
+    #[test]
+    fn results_that_are_no_numbers_are_refused() {
+        let told = |result: Result<Vec<f64>, InvalidInput>| result.unwrap_err().to_string();
+        let why =
+            "values[1] = 1 is not allowed; it must be a value with which the result at its time is a finite number";
+        for order in [0.5, 0.999] {
+            assert_eq!(told(caputo_sampled(order, &[0.0, 5e-324, 1.0], &[0.0, 1.0, 2.0])), why);
+            assert_eq!(told(riemann_liouville_sampled(order, &[0.0, 5e-324, 1.0], &[0.0, 1.0, 2.0])), why);
+        }
+        let close: Vec<f64> = (0..6).map(|i| 1e-310 * f64::from(i)).collect();
+        assert!(told(caputo_sampled(1.0, &close, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])).starts_with("values[0] = 0 "));
+        assert!(told(integral_sampled(1.0, &[0.0, 1e300], &[1e300; 2])).starts_with("values[1]"));
+        assert!(told(grunwald_letnikov(2.0, 1e-300, &[0.0, 1.0])).starts_with("values["));
     }
 
     #[test]
