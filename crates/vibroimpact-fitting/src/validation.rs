@@ -41,12 +41,16 @@ pub struct CrossValidation {
 /// most one. The same `seed` gives the same labels.
 ///
 /// # Errors
-/// [`InvalidInput`] unless `2 <= folds <= count`.
+/// [`InvalidInput`] unless `2 <= folds <= count`, or if there is no memory for so many labels.
 pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, InvalidInput> {
     if folds < 2 || folds > count {
         return Err(InvalidInput::new("folds", folds, "a number from 2 to the number of residuals"));
     }
-    let mut labels: Vec<usize> = (0..count).map(|i| i % folds).collect();
+    let mut labels: Vec<usize> = Vec::new();
+    if labels.try_reserve_exact(count).is_err() {
+        return Err(InvalidInput::new("count", count, "a number of residuals whose labels fit into the memory"));
+    }
+    labels.extend((0..count).map(|i| i % folds));
     Random::new(seed).shuffle(&mut labels);
     Ok(labels)
 }

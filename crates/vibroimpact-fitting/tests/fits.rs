@@ -403,6 +403,8 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     let fitted = fit(&good(), &Settings::default()).unwrap();
     assert!(fitted.intervals(1.0).is_err() && fitted.intervals(f64::NAN).is_err());
     assert!(k_folds(3, 4, 0).is_err() && k_folds(3, 1, 0).is_err());
+    let allowed = "is not allowed; it must be a number of residuals whose labels fit into the memory";
+    assert_eq!(k_folds(usize::MAX, 2, 0).unwrap_err().to_string(), format!("count = {} {allowed}", usize::MAX));
     assert!(cross_validate(&good(), &Settings::default(), &[0; 14]).is_err());
     assert!(cross_validate(&good(), &Settings::default(), &[0, 1]).is_err());
     assert!(bootstrap(&good(), &Settings::default(), &fitted, 1, 0, 0.9).is_err());
