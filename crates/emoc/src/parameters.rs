@@ -1,7 +1,7 @@
 //! The three-parameter form of chapter 7.
 
 use crate::closed_form::sum_of_squares;
-use crate::require::{require_fraction, require_non_negative, require_positive};
+use crate::require::{require, require_fraction, require_non_negative, require_positive};
 use crate::{Coefficients, Real, Rebound};
 use invalid_input::InvalidInput;
 
@@ -178,7 +178,7 @@ impl<T: Real> Parameters<T> {
     /// ```
     ///
     /// # Errors
-    /// As [`Parameters::coefficients`].
+    /// As [`Parameters::coefficients`], and for a mass so small that the derivative with respect to it is too large for a number.
     #[inline]
     pub fn rebound_with_gradient(
         &self,
@@ -194,12 +194,15 @@ impl<T: Real> Parameters<T> {
             + per.per_beta0 * saturate_log_slope(x0)
             + per.per_beta1 * saturate_log_slope(x1)
             + per.per_z * impact.z;
+        let per_mass_per_kg = per_log_mass / impact.mass_kg;
+        let allowed = "a mass with respect to which the derivative is a finite number";
+        require(per_mass_per_kg <= T::MAX && per_mass_per_kg >= -T::MAX, "mass_kg", impact.mass_kg, allowed)?;
         let gradient = ParameterGradient {
             per_mu0: -per.per_ebar * e * dip_slope(t) * impact.z,
             per_alpha0: per.per_beta0 * saturate_slope(x0) * impact.s0,
             per_alpha1: per.per_beta1 * saturate_slope(x1) * impact.s1,
             per_notional_restitution: per.per_ebar * (T::ONE - dip(t)),
-            per_mass_per_kg: per_log_mass / impact.mass_kg,
+            per_mass_per_kg,
         };
         Ok((rebound, gradient))
     }

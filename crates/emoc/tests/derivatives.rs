@@ -1,7 +1,7 @@
 //! Analytic derivatives compared with differences, the ranges of the restitution, and single precision.
 
 use crate::common::Random;
-use emoc::{Branch, Coefficients, Impact, Parameters, Site, newton_restitution};
+use emoc::{Branch, Coefficients, Impact, ParameterGradient, Parameters, Site, newton_restitution};
 
 /// Central difference of fourth order.
 fn difference(f: impl Fn(f64) -> f64, x: f64) -> f64 {
@@ -97,13 +97,21 @@ fn extreme_numbers_give_numbers_or_errors() {
                     for phi in [[0.0, 0.0], [1e-160, 1e-160], [1.0, 2.0], [1e150, 1.0], [1e200, 1.0]] {
                         let Ok(site) = Site::new(&phi) else { continue };
                         let Ok(impact) = Impact::new(mass, &site) else { continue };
-                        let (rebound, gradient) = p.rebound_with_gradient(&impact).unwrap();
+                        let (rebound, gradient) = match p.rebound_with_gradient(&impact) {
+                            Ok(both) => both,
+                            Err(fault) => {
+                                let mass_alone =
+                                    fault.to_string().starts_with("mass_kg = 5e-324 is not allowed; it must be");
+                                assert!(mass_alone && p.rebound(&impact).is_ok(), "{p:?} {impact:?} {fault}");
+                                continue;
+                            }
+                        };
                         assert!((0.0..=1.0).contains(&rebound.restitution), "{p:?} {impact:?} {rebound:?}");
                         assert!((0.0..=1.0).contains(&rebound.recoil));
-                        for slope in [gradient.per_mu0, gradient.per_alpha0, gradient.per_alpha1] {
-                            assert!(!slope.is_nan(), "{p:?} {impact:?} {gradient:?}");
+                        let ParameterGradient { per_mu0, per_alpha0, per_alpha1, per_mass_per_kg, .. } = gradient;
+                        for slope in [per_mu0, per_alpha0, per_alpha1, per_mass_per_kg] {
+                            assert!(slope.is_finite(), "{p:?} {impact:?} {gradient:?}");
                         }
-                        assert!(!gradient.per_mass_per_kg.is_nan(), "{p:?} {impact:?} {gradient:?}");
                     }
                 }
             }
