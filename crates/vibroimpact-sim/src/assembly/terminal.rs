@@ -221,15 +221,18 @@ impl Window {
     pub fn carried(&self, from: &Landed, length: f64) -> Landed {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
         let carry = |nodal: &Nodal| Legendre::through(nodal).at_each(&places);
-        let carried = |solved: &Collocated| Collocated {
-            force: if solved.ends.ends { solved.force } else { carry(&solved.force) },
-            ends: solved.ends,
-            acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
-            compression: carry(&solved.compression),
-            moved: carry(&solved.moved),
-            rate: carry(&solved.rate),
+        let carried = |(solved, free): (&Collocated, &Series)| {
+            let moved = carry(&solved.moved);
+            Collocated {
+                force: if solved.ends.ends { solved.force } else { carry(&solved.force) },
+                ends: solved.ends,
+                acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
+                compression: moved.map(|moved| free[0] + moved),
+                moved,
+                rate: carry(&solved.rate),
+            }
         };
-        let solved = from.solved.iter().map(carried).collect();
+        let solved = from.solved.iter().zip(&self.free).map(carried).collect();
         self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))
     }
 }
