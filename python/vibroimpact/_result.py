@@ -40,7 +40,7 @@ class Impact(Result):
 
     @property
     def restitution_uncertainty(self) -> float | None:
-        """Uncertainty of the restitution; ``None`` if it is not known."""
+        """Uncertainty of the restitution; ``None`` if that of the solver is not known."""
         return self["restitution_uncertainty"]  # type: ignore[no-any-return]
 
     @property

@@ -42,7 +42,7 @@ pub struct ResultFile {
     pub stopped_by: Option<StopReason>,
     /// Net restitution, 0 in sustained contact; null where the bodies did not approach each other or the computation stopped.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution: the sum of what can be estimated; null where nothing can.
+    /// Estimated error of the restitution: the sum of what can be estimated; null where that of the solver cannot.
     pub restitution_uncertainty: Option<f64>,
     /// Its parts; null where a part cannot be known, which `choice.not_known` explains.
     pub uncertainty: Uncertainty,

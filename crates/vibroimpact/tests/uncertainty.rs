@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::gallery::named;
 use serde_json::{Value, json};
 use vibroimpact::Scene;
-use vibroimpact::model::{Answer, Kept, Model, Modes};
+use vibroimpact::model::{Answer, Kept, Model, Modes, Uncertainty};
 
 fn answer(scene: &Scene) -> Answer {
     scene.answer().unwrap()
@@ -538,24 +538,28 @@ fn stated_modes_with_remainder_modes_agree_by_accident() {
 }
 
 /// Two modes of a beam under a very heavy striker: the impact with four modes and remainder modes takes more steps than are allowed,
-/// and under a heavier striker that with two modes and remainder modes does too.
+/// and under a heavier striker that with two modes and remainder modes does too. At a loose tolerance a coarser solution of the impact
+/// itself does.
 #[test]
 fn a_comparison_that_stops_is_no_uncertainty_of_1() {
-    let beside = |mass_kg: f64| {
+    let beside = |mass_kg: f64, tolerance: f64| {
         let scene = json!({
             "structure": { "kind": "beam", "theory": "euler-bernoulli", "ends": ["pinned", "pinned"], "damping_ratio": 0.01,
                            "segments": [{ "length_m": 1, "width_m": 0.012, "thickness_m": 0.003, "material": "steel" }] },
             "striker": { "mass_kg": mass_kg, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e8 },
-            "location_m": 0.3, "modes": 2
+            "location_m": 0.3, "modes": 2, "tolerance": tolerance
         });
         let found = answer(&Scene::from_value(&scene).unwrap());
         assert_eq!(found.outcome, "rebound");
-        (found.uncertainty.modes_left_out, found.not_known)
+        (found.uncertainty, found.restitution_uncertainty, found.not_known)
     };
-    let (estimate, _) = beside(3e5);
+    let (Uncertainty { modes_left_out: estimate, .. }, _, _) = beside(3e5, 1e-9);
     assert!(estimate.is_some_and(|estimate| estimate > 0.0 && estimate < 1e-3), "{estimate:?}");
-    let (estimate, why) = beside(1e6);
+    let (Uncertainty { modes_left_out: estimate, .. }, _, why) = beside(1e6, 1e-9);
     let told =
         "modes left out: the impact with 2 modes, and remainder modes for the others, stopped before it ended (steps)";
     assert!(estimate.is_none() && why.iter().any(|why| why == told), "{estimate:?} {why:?}");
+    let (Uncertainty { solver, .. }, whole, why) = beside(3e5, 1e-4);
+    let told = "solver: the same impact with a coarser tolerance stopped before it ended";
+    assert!(solver.is_none() && whole.is_none() && why.iter().any(|why| why == told), "{solver:?} {whole:?} {why:?}");
 }

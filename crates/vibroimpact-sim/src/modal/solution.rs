@@ -73,7 +73,8 @@ pub struct Solution {
     /// (for a structure without rigid-body modes: of the striker alone). 0 in sustained contact. `None` unless the bodies approached
     /// each other, fast enough for the ratio to be a number, and the impact ended.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution, from two or three coarser solutions; `None` if not requested.
+    /// Estimated error of the restitution, from two or three coarser solutions; `None` if not requested, and if it is not
+    /// known because one of them stopped at a limit before its end. It is 1 if the bodies do not meet in one of them.
     pub restitution_uncertainty: Option<f64>,
     /// Every interval of contact, in order of time.
     pub sub_impacts: Vec<SubImpact>,

@@ -283,7 +283,7 @@ impl Solver {
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
         let known = if estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
-        let restitution_uncertainty = known.map(|known| {
+        let restitution_uncertainty = known.and_then(|known| {
             let coarser = beside.get_or_insert_with(|| self.coarser(&impact, keep));
             self.uncertainty(&known, coarser, &impact, &mut lowered, &mut counts)
         });
@@ -336,7 +336,8 @@ impl Solver {
         self.others[which].get_or_init(|| Box::new(of(COARSER[which].0)))
     }
 
-    /// Estimated error of the restitution, from coarser solutions of the same impact: 1 if one of them has no restitution.
+    /// Estimated error of the restitution, from coarser solutions of the same impact: `None` if one of them stopped at a limit, and 1
+    /// if one ended without a restitution.
     fn uncertainty(
         &self,
         known: &Restitutions,
@@ -344,23 +345,24 @@ impl Solver {
         impact: &Impact,
         lowered: &mut Lowered,
         counts: &mut Counts,
-    ) -> f64 {
+    ) -> Option<f64> {
+        let without = |run: &Run| if run.outcome.stopped_by().is_some() { None } else { Some(1.0) };
         let tolerance = impact.settings.tolerance.min(LOOSEST);
         let (mut spread, mut same_contacts) = (0.0f64, true);
         for (run, coarser) in coarser {
             *counts += run.counts;
-            let Some(coarser) = coarser else { return 1.0 };
+            let Some(coarser) = coarser else { return without(run) };
             spread = spread.max(known.difference(coarser));
             same_contacts &= known.flights.len() == coarser.flights.len();
         }
         if spread > tolerance || !same_contacts {
             let run = self.run_lowered(impact, lowered, FURTHER * tolerance, Keep::Result);
             *counts += run.counts;
-            let Some(further) = self.restitutions(&run, impact, SECOND) else { return 1.0 };
+            let Some(further) = self.restitutions(&run, impact, SECOND) else { return without(&run) };
             spread = spread.max(2.0 * known.difference(&further));
         }
         let contacts = known.flights.len() as f64;
-        (WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX)
+        Some((WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX))
     }
 
     /// The tables for a system of the structure, with or without a striker.

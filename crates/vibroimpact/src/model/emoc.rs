@@ -121,7 +121,7 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let count = modes.len();
     cost.solves += 1;
     let known = match &class {
-        Ok(()) => Known::new(pose.scene, Some(CLOSED_FORM), Ok(VALIDATED.error_95)),
+        Ok(()) => Known::new(pose.scene, Ok(CLOSED_FORM), Ok(VALIDATED.error_95)),
         Err(why) => Known::nothing(&format!("no part: {why}")),
     };
     let reason = match class {

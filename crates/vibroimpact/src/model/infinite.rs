@@ -259,7 +259,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let relative = 1.0 + mass * rigid;
     let restitution = ratio.map(|ratio| (1.0 + ratio) * relative - 1.0);
     let known = match restitution.filter(|_| free && bound.is_finite()) {
-        Some(_) => Known::new(pose.scene, Some(relative * SOLVER), Ok(relative * bound)),
+        Some(_) => Known::new(pose.scene, Ok(relative * SOLVER), Ok(relative * bound)),
         None => Known::nothing("no part: the effect of waves from the ends of the beam is not bounded"),
     };
     let uncertainty = known.uncertainty.whole();
@@ -332,7 +332,8 @@ impl Scene {
             solution.s.map_or_else(|| format!("{} contact", self.contact.law_name()), |s| format!("S = {}", small(s)));
         let reason = format!("the structure is an {kind}: {told}");
         // there are no truncated modes
-        let known = Known::new(self, uncertainty, Ok(0.0)).of(restitution);
+        let solver = uncertainty.ok_or("the same impact with more nodes has other contacts, or ends otherwise");
+        let known = Known::new(self, solver, Ok(0.0)).of(restitution);
         Answer {
             outcome: solution.outcome.as_str(),
             stopped_by: solution.outcome.stopped_by(),

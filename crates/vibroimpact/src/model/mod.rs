@@ -73,7 +73,8 @@ pub struct Answer {
     pub stopped_by: Option<StopReason>,
     /// Net restitution, 0 in sustained contact; null where the bodies did not approach each other or the computation stopped.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
+    /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`; null if that
+    /// of the solver is not known.
     pub restitution_uncertainty: Option<f64>,
     /// Its parts; null where a part cannot be known.
     pub uncertainty: Uncertainty,

@@ -108,7 +108,7 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
         None => "rigid: requested; the effect of the structure is not bounded".to_owned(),
     };
     let known = match bound {
-        Some(bound) => Known::new(pose.scene, Some(CLOSED_FORM), Ok(bound)),
+        Some(bound) => Known::new(pose.scene, Ok(CLOSED_FORM), Ok(bound)),
         None => Known::nothing("no part: the effect of the structure is not bounded"),
     };
     let answer = Answer {

@@ -351,7 +351,7 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
     let stated = if settled { left_out.max((LUCK * left_out).min(pose.tolerance - solver)) } else { left_out };
     let Rung { impact, solution, recording, .. } = rungs.last;
     pose.kept.keep(&impact.structure, recording);
-    let known = Known::new(pose.scene, Some(solver.min(1.0)), Ok(stated.min(1.0)));
+    let known = Known::new(pose.scene, Ok(solver.min(1.0)), Ok(stated.min(1.0)));
     Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason }))
 }
 

@@ -85,6 +85,7 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
             }
             None => compare(scene, kept, &impact, cost)?,
         };
+        let solver = solver.ok_or("the same impact with a coarser tolerance stopped before it ended");
         Known::new(scene, solver, compared.map(|compared| compared.left_out(&impact, &solution)))
     } else {
         Known::default()

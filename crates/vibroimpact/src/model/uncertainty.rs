@@ -23,10 +23,12 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// The whole of what can be estimated: the sum of the parts that are known; `None` if no part is.
+    /// The whole of what can be estimated: the sum of the parts that are known; `None` if the solver's part is not, without which no
+    /// digit of the restitution is known.
     pub fn whole(&self) -> Option<f64> {
-        let known: Vec<f64> = self.parts().into_iter().filter_map(|(_, part)| part).collect();
-        (!known.is_empty()).then(|| known.iter().sum::<f64>().min(f64::MAX))
+        self.solver?;
+        let known = self.parts().into_iter().filter_map(|(_, part)| part);
+        Some(known.sum::<f64>().min(f64::MAX))
     }
 
     /// Difference of the restitution from its limit by the same theory: the sum of the known parts without that of the theory.
@@ -48,13 +50,11 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// The uncertainty of an impact on the structure of `scene` with this solver error; `modes_left_out` may state why it is not
+    /// The uncertainty of an impact on the structure of `scene`, whose solver error and truncation error may state why they are not
     /// known.
-    pub fn new(scene: &Scene, solver: Option<f64>, modes_left_out: Result<f64, String>) -> Known {
+    pub fn new(scene: &Scene, solver: Result<f64, &str>, modes_left_out: Result<f64, String>) -> Known {
         let mut not_known = Vec::new();
-        if solver.is_none() {
-            not_known.push("solver: the impact was not solved with coarser tolerances".to_owned());
-        }
+        let solver = solver.map_err(|why| not_known.push(format!("solver: {why}"))).ok();
         let modes_left_out =
             modes_left_out.map_err(|why| not_known.push(format!("modes left out: {why}"))).ok().filter(|u| !u.is_nan());
         not_known.push(format!("beam theory: {}", why_not_judged(&scene.structure)));
@@ -109,5 +109,6 @@ mod tests {
         assert_eq!(Uncertainty::default().whole(), None);
         let some = Uncertainty { solver: Some(0.25), modes_left_out: None, beam_theory: Some(0.5) };
         assert_eq!(some.whole(), Some(0.75));
+        assert_eq!(Uncertainty { solver: None, ..some }.whole(), None);
     }
 }
