@@ -12,13 +12,17 @@
 //! energy of the remainder modes, which detects most accidents, sets a lower bound (`left_out.rs`):
 //!
 //! ```text
-//! u = |e - e_M| + max( 12 |e_M - e_(M/1.4)|, e_r, |e - e_M|/4 ) + d_c.
+//! u = |e - e_M| + max( 12 |e_M - e_(M/1.4)|, e_r, |e - e_M|/4 ) + d_c,
 //! ```
 //!
 //! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
 //! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact that
 //! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
 //! their number, and a small change from so few further modes may be an accident.
+//!
+//! The second formula holds for any stated modes if the force jumps at first touch. Changes then decrease as slowly as `1/N`, and
+//! nearly vanish for some numbers of modes (`left_out.rs`), so that a third number, `M/2`, is compared as well, and `|e_(M/1.4) -
+//! e_(M/2)|` is another lower bound of the maximum. (If the structure moves before the impact, there is no third number.)
 //!
 //! More modes take more and shorter steps, or have further contacts, so that the impact with more modes may stop where the stated one
 //! does not. `M` is then the number of the stated modes; if that stops as well, nothing is known about the truncated modes.
@@ -28,7 +32,7 @@ use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
-use super::left_out::{Change, energy_of_remainder, restitution_per_impulse, with_softer_remainder};
+use super::left_out::{Change, by_changes, energy_of_remainder, jumps, restitution_per_impulse, with_softer_remainder};
 use super::pose::Pose;
 use super::settle::{Conclusion, LUCK};
 use super::uncertainty::Known;
@@ -39,9 +43,7 @@ use crate::text::counted;
 
 /// The comparison begins with the expected number of modes for this tolerance.
 const LOOSE: f64 = 3e-3;
-/// Weight of the only change between richer impacts, and least share of the change from the stated modes that counts as well: two
-/// richer impacts may agree by accident.
-const CAUTION: f64 = 3.0;
+/// Least share of the change from the stated modes that counts as well: two richer impacts may agree by accident.
 const LEAST_SHARE: f64 = 0.25;
 /// The solver's tolerance in the comparison, and the factor of the number of modes at which it costs as much as the impact itself,
 /// which is solved three times and far more accurately.
@@ -105,8 +107,10 @@ fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, 
 /// The same impact with other modes.
 struct Compared {
     richer: Other,
-    /// With fewer modes than that, unless the structure has no more.
-    fewer: Option<Other>,
+    /// How many modes that is.
+    count: usize,
+    /// With fewer modes than that, and again fewer if the force jumps at first touch; empty if the structure has no more.
+    fewer: Vec<(usize, Other)>,
     /// As the richer one, with the compliance larger by its uncertainty.
     softer: Option<Solution>,
 }
@@ -145,12 +149,19 @@ impl Compared {
             Other::Itself => energy_of_remainder(impact, solution),
             Other::Solved(_, energy) => *energy,
         };
-        let further = |fewer: &Other| {
-            let changed = CAUTION * change(fewer.or(solution)).size();
-            let possible = if impact.remainder_modes > 0 { (LUCK * changed).max(energy) } else { changed };
-            possible.max(LEAST_SHARE * stated)
-        };
-        let further = self.fewer.as_ref().map_or(0.0, further);
+        let mut from = (self.count, &self.richer);
+        let mut changes = Vec::new();
+        for (count, fewer) in &self.fewer {
+            let changed = Change::between(fewer.or(solution), from.1.or(solution), per_impulse);
+            changes.push((changed.size(), from.0));
+            from = (*count, fewer);
+        }
+        let further = changes.get(..1).map_or(0.0, |latest| {
+            let jumps = jumps(&impact.law, &impact.striker);
+            let accident = (LUCK * by_changes(latest, false)).max(energy);
+            let accident = if impact.remainder_modes > 0 || jumps { accident } else { 0.0 };
+            by_changes(&changes, jumps).max(accident).max(LEAST_SHARE * stated)
+        });
         let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
         (stated + further + softer).min(1.0)
     }
@@ -198,11 +209,12 @@ fn compare_with(
     [count, more, most]: [usize; 3],
     cost: &mut Cost,
 ) -> Result<Result<Compared, String>, InvalidInput> {
-    let fewer = match &scene.start {
+    let second = match &scene.start {
         // the motion before the impact may need all stated modes
         Some(_) if count < most => fewer(more).max(count),
         _ => fewer(more),
     };
+    let third = (scene.start.is_none() && jumps(&impact.law, &impact.striker)).then(|| fewer(second));
     let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
     let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
     let complete = |of: &Impact| of.remainder_modes == 0;
@@ -220,13 +232,17 @@ fn compare_with(
         return Ok(Err(not_compared(more, reason)));
     }
     if nothing_left {
-        return Ok(Ok(Compared { richer, fewer: None, softer: None }));
+        return Ok(Ok(Compared { richer, count: more, fewer: Vec::new(), softer: None }));
     }
-    let Ok((other, _)) = with(fewer) else {
-        return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
-    };
-    if let Some(reason) = other.stopped_by() {
-        return Ok(Err(not_compared(fewer, reason)));
+    let mut others = Vec::new();
+    for fewer in [second].into_iter().chain(third) {
+        let Ok((other, _)) = with(fewer) else {
+            return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
+        };
+        if let Some(reason) = other.stopped_by() {
+            return Ok(Err(not_compared(fewer, reason)));
+        }
+        others.push((fewer, other));
     }
     let uncertain_m_n = match &scene.structure {
         Structure::Plate(_) => scene.structure.static_compliance_with_uncertainty_m_n(scene.place())?.1,
@@ -243,7 +259,7 @@ fn compare_with(
     } else {
         None
     };
-    Ok(Ok(Compared { richer, fewer: Some(other), softer }))
+    Ok(Ok(Compared { richer, count: more, fewer: others, softer }))
 }
 
 /// Why the effect of the truncated modes is not known if the impact with this many modes stops.
