@@ -339,6 +339,23 @@ fn rounding_of_the_overlap_does_not_hide_where_the_force_of_a_dashpot_ends() {
     assert!((coarse - fine).abs() < 1e-9 * fine, "{coarse} {fine}");
 }
 
+/// A ball leaves a surface that it overlaps, and a load presses it back. Lankarani and Nikravesh's law is a strong dashpot then, which
+/// takes up the load within some 1e-9 s. On longer steps its force oscillates, and seems to end again and again.
+#[test]
+fn a_strong_dashpot_that_is_pressed_again_takes_few_steps_at_any_tolerance() {
+    let shape = vec![0.4f64.sqrt().recip()];
+    let law = Law::from(LankaraniNikravesh::new(9.4e7, 0.2).unwrap());
+    let assembly = Assembly {
+        bodies: vec![Body::mass(0.4, 0.0, 0.5)],
+        contacts: vec![Contact { sides: [on(0, &shape), Point::Ground], gap_m: -2.6e-4, law }],
+        loads: vec![Load { body: 0, shape, force: Force::Constant { force_n: -610.0 } }],
+    };
+    for tolerance in [1e-3, 1e-6, 1e-9] {
+        let run = run(&assembly, &Settings { tolerance, ..Settings::until(4e-3) }, &mut ()).unwrap();
+        assert!(run.counts.steps() < 100 && run.counts.events < 10, "{:?}", run.counts);
+    }
+}
+
 #[test]
 fn a_dashpot_under_loads_is_solved_to_the_finest_tolerance() {
     let law = Law::from(KelvinVoigt::new(1e8, 1363.0).unwrap());
