@@ -15,7 +15,7 @@ use nalgebra::DVector;
 /// Returns after up to this many periods are reported.
 const MOST_PERIODS: usize = 16;
 /// Number of near returns from which Newton's method begins.
-const STARTS: usize = 8;
+const STARTS: usize = 32;
 /// Tolerance of the long motion, which only yields first approximations.
 const COARSE: f64 = 1e-6;
 /// A motion has converged if it repeats itself to this share of its size over [`LAST`] periods.
