@@ -1,7 +1,7 @@
 //! Derivatives of an impact with respect to the numbers that define it.
 
 use super::posed;
-use super::problem::{Mode, Settings, Start, Striker, Structure, moved};
+use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::solution::{Outcome, Solution};
 use super::solve::{COARSER, Impact, Run, SECOND, Solved, Solver};
 use super::time_unit::{Law, Unit};
@@ -210,7 +210,8 @@ impl Solver {
             Err(why) => return Ok(none(solution, why)),
         };
         let coarse = coarse.map_or(Vec::new(), |(changes, _)| changes);
-        let by_impulse = [self.mobility(striker) / self.approach(striker, start), striker.mass_kg.recip()];
+        let by_impulse =
+            [mobility(self.modes(), striker) / approach(self.modes(), striker, start), striker.mass_kg.recip()];
         let of = |(i, fine): (usize, Result<Changes, NoDerivative>)| {
             let fine = fine?;
             let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
@@ -310,15 +311,12 @@ fn restitution_change(
     [velocity, velocity_change]: [f64; 2],
     [end, end_change]: &[Vec<f64>; 2],
 ) -> f64 {
-    let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
-        modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
-    };
     let stencil = Stencil::new(by.offsets);
-    let by_shape = stencil.slope(by.neighbours.each_ref().map(|at| rigid(&at.structure.modes, end)));
-    let parting = velocity - rigid(modes, end);
-    let parting_change = velocity_change - by_shape - rigid(modes, end_change);
-    let before = impact.striker.speed_m_s + rigid(modes, &impact.start.rate);
-    let before_of = |at: &Posing| at.striker.speed_m_s + rigid(&at.structure.modes, &at.start.rate);
+    let by_shape = stencil.slope(by.neighbours.each_ref().map(|at| rigid_motion(&at.structure.modes, end)));
+    let parting = velocity - rigid_motion(modes, end);
+    let parting_change = velocity_change - by_shape - rigid_motion(modes, end_change);
+    let before = approach(modes, impact.striker, impact.start);
+    let before_of = |at: &Posing| approach(&at.structure.modes, at.striker, at.start);
     let before_change = stencil.slope(by.neighbours.each_ref().map(before_of));
     (parting_change - parting / before * before_change) / before
 }

@@ -62,6 +62,22 @@ pub(crate) fn moved(modes: &[Mode], start: Option<&Start>) -> Vec<usize> {
     modes.iter().enumerate().filter(|(k, mode)| counts(*k, mode)).map(|(k, _)| k).collect()
 }
 
+/// Motion of the contact by the rigid-body modes, from a number for each mode.
+pub(crate) fn rigid_motion(modes: &[Mode], of_modes: &[f64]) -> f64 {
+    modes.iter().zip(of_modes).filter(|(mode, _)| mode.is_rigid()).map(|(mode, value)| mode.shape * value).sum()
+}
+
+/// As [`Structure::mobility_per_kg`].
+pub(crate) fn mobility(modes: &[Mode], striker: &Striker) -> f64 {
+    let rigid = modes.iter().filter(|mode| mode.is_rigid());
+    striker.mass_kg.recip() + rigid.map(|mode| mode.shape * mode.shape).sum::<f64>()
+}
+
+/// As [`Structure::approach_m_s`].
+pub(crate) fn approach(modes: &[Mode], striker: &Striker, start: &Start) -> f64 {
+    striker.speed_m_s + rigid_motion(modes, &start.rate)
+}
+
 /// A linear structure, as seen from the contact. Truncated modes are best represented by remainder modes
 /// ([`beam_modes::remainder_modes`]), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -88,6 +104,16 @@ impl Structure {
     pub fn from_modes(modes: impl IntoIterator<Item = PointMode>, damping_ratio: f64) -> Structure {
         let damped = |PointMode { omega_rad_s, shape }| Mode { omega_rad_s, damping_ratio, shape };
         Structure { modes: modes.into_iter().map(damped).collect() }
+    }
+
+    /// Relative velocity of the rigid-body motions of structure and striker per impulse between them (1/kg): `1/m + sum phi^2`.
+    pub fn mobility_per_kg(&self, striker: &Striker) -> f64 {
+        mobility(&self.modes, striker)
+    }
+
+    /// Velocity with which these motions approach each other (m/s).
+    pub fn approach_m_s(&self, striker: &Striker, start: &Start) -> f64 {
+        approach(&self.modes, striker, start)
     }
 
     /// Checks that every number lies in the range of the solver.

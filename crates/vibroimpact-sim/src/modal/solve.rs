@@ -2,7 +2,7 @@
 
 use super::history::{History, all_modes};
 use super::posed;
-use super::problem::{Mode, Settings, Start, Striker, Structure, moved};
+use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
@@ -445,13 +445,13 @@ impl Solver {
     }
 
     fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
-        let before = self.approach(striker, start);
+        let before = approach(&self.modes, striker, start);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_moved());
         let separation = match run.outcome {
             // the bodies stay together, whatever is left of their motion
             Outcome::Sustained => 0.0,
-            _ => run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k]),
+            _ => run.striker_velocity_m_s - rigid_motion(&self.modes, &run.rate),
         };
         let ratio = separation / before;
         // the ratio to an approach of 1e-310 m/s overflows on a structure that moves
@@ -462,29 +462,14 @@ impl Solver {
     fn restitutions(&self, run: &Run, impact: &Impact, unit: Unit) -> Option<Restitutions> {
         let Impact { striker, start, .. } = *impact;
         let last = self.restitution(run, striker, start)?;
-        let (mobility, approach, mut impulse_n_s) = (self.mobility(striker), self.approach(striker, start), 0.0);
+        let (mobility, approach) = (mobility(&self.modes, striker), approach(&self.modes, striker, start));
+        let mut impulse_n_s = 0.0;
         let after = |contact: &SubImpact| {
             impulse_n_s += contact.impulse_n_s;
             let contact_s = [contact.start_s, contact.end_s].map(|time| unit.seconds(time));
             Flight { contact_s, restitution: mobility * impulse_n_s / approach - 1.0 }
         };
         Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last })
-    }
-
-    /// Relative velocity of the rigid-body motions per impulse (1/kg).
-    pub(crate) fn mobility(&self, striker: &Striker) -> f64 {
-        striker.mass_kg.recip() + self.rigid_motion(|k| self.modes[k].shape)
-    }
-
-    /// Velocity of approach of the rigid-body motions (m/s).
-    pub(crate) fn approach(&self, striker: &Striker, start: &Start) -> f64 {
-        striker.speed_m_s + self.rigid_motion(|k| start.rate[k])
-    }
-
-    /// Motion of the contact by the rigid-body modes; `of` is the motion of each mode.
-    fn rigid_motion(&self, of: impl Fn(usize) -> f64) -> f64 {
-        let rigid = self.modes.iter().enumerate().filter(|(_, mode)| mode.is_rigid());
-        rigid.map(|(k, mode)| mode.shape * of(k)).sum()
     }
 }
 

@@ -148,10 +148,8 @@ pub(super) fn still_growing(modes: &[Mode]) -> f64 {
 /// approach `v` (1/(N s)).
 pub(super) fn restitution_per_impulse(impact: &Impact) -> f64 {
     let Impact { structure, striker, start, .. } = impact;
-    let rigid = || structure.modes.iter().enumerate().filter(|(_, mode)| mode.omega_rad_s == 0.0);
-    let mobility = striker.mass_kg.recip() + rigid().map(|(_, mode)| mode.shape.powi(2)).sum::<f64>();
-    let rate = |k: usize| start.as_ref().and_then(|start| start.rate.get(k)).copied().unwrap_or(0.0);
-    mobility / (striker.speed_m_s + rigid().map(|(k, mode)| mode.shape * rate(k)).sum::<f64>())
+    let approach_m_s = start.as_ref().map_or(striker.speed_m_s, |start| structure.approach_m_s(striker, start));
+    structure.mobility_per_kg(striker) / approach_m_s
 }
 
 /// One more than the restitution that the impact would have if it ended with each of its separations.
