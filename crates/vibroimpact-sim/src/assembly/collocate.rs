@@ -6,9 +6,9 @@
 //! `1 - F_xi R T - F_rate V T` has a block for each pair of contacts, which is zero if they share no body. The iteration ends when the
 //! remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
 //!
-//! Rates are computed only where the force depends on them. They are exact, since the derivative of the polynomial through the start and
-//! the nodes would misrepresent vibrations that turn far on the panel, and misses a part of the rate of a rigid body, by which a deviation
-//! of the speed grows as soon as the panel is longer than 31 time constants of a dashpot.
+//! Rates are computed only where the force depends on them, and are exact. The derivative of the polynomial through the start and the
+//! nodes would misrepresent vibrations that turn far on the panel. It would also miss a part of the rate of a rigid body, and a deviation
+//! of the speed would then grow as soon as the panel is longer than 31 time constants of a dashpot.
 
 use super::solution::Counts;
 use crate::panel::ends::Ends;

@@ -252,7 +252,7 @@ impl<'a> March<'a> {
     /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried, with its rate where
     /// there is one.
     fn unknowns_of(&self, window: &Window, length: f64, ends: impl Fn(usize) -> Ends) -> Vec<Unknown<'a>> {
-        let free = |i: usize| ([0.0; Q], self.force_by_rate(window.contacts[i]).then_some([0.0; Q]));
+        let free = |i: usize| ([0.0; Q], self.states[window.contacts[i]].force_by_rate().then_some([0.0; Q]));
         self.unknowns(&window.contacts[..window.closed], length, free, ends).collect()
     }
 

@@ -81,7 +81,7 @@ impl<'a> March<'a> {
                     contact,
                     force,
                     ends: solved.ends,
-                    by_rate: self.force_by_rate(contact),
+                    by_rate: self.states[contact].force_by_rate(),
                 })
                 .collect(),
         }

@@ -17,9 +17,8 @@ struct Level {
     /// `[c][c']`: number of the response, where it was requested.
     pairs: Vec<Option<usize>>,
     found: Vec<Response>,
-    /// The same of their rates at the nodes.
-    pairs_of_rates: Vec<Option<usize>>,
-    rates: Vec<Matrix>,
+    /// Their rates at the nodes, where these were requested.
+    rates: Vec<Option<Matrix>>,
 }
 
 impl Responses {
@@ -38,11 +37,10 @@ impl Responses {
         let empty = || Level {
             pairs: vec![None; count * count],
             found: Vec::with_capacity(3 * contacts.len()),
-            pairs_of_rates: vec![None; count * count],
             rates: Vec::new(),
         };
         self.levels.get_or_init(j, empty);
-        let Some(Level { pairs, found, .. }) = self.levels.get_mut(j) else { return };
+        let Some(Level { pairs, found, rates }) = self.levels.get_mut(j) else { return };
         for &c in contacts {
             for &other in of_neighbours(c) {
                 let pair = &mut pairs[c * count + other];
@@ -50,36 +48,43 @@ impl Responses {
                     *pair = Some(found.len());
                     let inverse_mass = system.links[c].shared_rigid(&system.links[other]);
                     found.push(tables.elastic_response(j, c, other).with_rigid(inverse_mass, step_s(j)));
+                    rates.push(None);
                 }
             }
         }
     }
 
     /// Computes the rates at the nodes of these contacts under these forces that are not cached yet. Needs [`Responses::prepare`].
-    pub fn prepare_rates(&mut self, system: &System, tables: &Tables, j: i32, contacts: &[usize], forces: &[usize]) {
+    pub fn prepare_rates(
+        &mut self,
+        system: &System,
+        tables: &Tables,
+        j: i32,
+        contacts: impl Iterator<Item = usize>,
+        forces: &[usize],
+    ) {
         let count = system.links.len();
-        let Some(Level { pairs_of_rates, rates, .. }) = self.levels.get_mut(j) else { return };
-        let of_contact = |&c: &usize| forces.iter().map(move |&other| (c, other));
-        let missing = |(c, other): &(usize, usize)| {
-            system.neighbours[*c].contains(other) && pairs_of_rates[c * count + other].is_none()
-        };
-        let pairs: Vec<(usize, usize)> = contacts.iter().flat_map(of_contact).filter(missing).collect();
-        if pairs.is_empty() {
+        let Some(Level { pairs, rates, .. }) = self.levels.get_mut(j) else { return };
+        let number = |(c, other): (usize, usize)| pairs[c * count + other];
+        let missing = |pair: &(usize, usize)| number(*pair).is_some_and(|number| rates[number].is_none());
+        let missing: Vec<(usize, usize)> =
+            contacts.flat_map(|c| forces.iter().map(move |&other| (c, other))).filter(missing).collect();
+        if missing.is_empty() {
             return;
         }
-        tables.prepare_rates(system, j, &pairs);
-        for (c, other) in pairs {
-            pairs_of_rates[c * count + other] = Some(rates.len());
+        tables.prepare_rates(system, j, &missing);
+        for (c, other) in missing {
+            let Some(number) = number((c, other)) else { continue };
             let inverse_mass = system.links[c].shared_rigid(&system.links[other]);
             let elastic = tables.elastic_rates(j, c, other);
-            rates.push(with_rigid_modes(elastic, Order::Velocity, inverse_mass, step_s(j)));
+            rates[number] = Some(with_rigid_modes(elastic, Order::Velocity, inverse_mass, step_s(j)));
         }
     }
 
     /// Rates of contact `c` at the nodes under the force of `other`, if they share a body. Needs [`Responses::prepare_rates`].
     pub fn rates(&self, system: &System, j: i32, c: usize, other: usize) -> Option<&Matrix> {
         let level = self.levels.get(j)?;
-        level.pairs_of_rates[c * system.links.len() + other].map(|pair| &level.rates[pair])
+        level.rates[level.pairs[c * system.links.len() + other]?].as_ref()
     }
 
     /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Responses::prepare`].

@@ -95,6 +95,11 @@ impl State {
         matches!(self.phase, Phase::Closed(_))
     }
 
+    /// Whether the contact is closed, and its force may depend on the rate.
+    pub fn force_by_rate(&self) -> bool {
+        self.touch().is_some_and(|touch| touch.force_by_rate)
+    }
+
     pub fn touch(&self) -> Option<&Touch> {
         match &self.phase {
             Phase::Closed(touch) => Some(touch),

@@ -42,11 +42,8 @@ impl<'a> March<'a> {
         let closed = *closed;
         self.responses.prepare(self.system, self.tables, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
-        for &c in &contacts[..closed] {
-            if self.force_by_rate(c) {
-                self.responses.prepare_rates(self.system, self.tables, level, &[c], &contacts[..closed]);
-            }
-        }
+        let by_rate = contacts[..closed].iter().copied().filter(|&c| self.states[c].force_by_rate());
+        self.responses.prepare_rates(self.system, self.tables, level, by_rate, &contacts[..closed]);
         free.clear();
         free.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         moved.clear();
@@ -137,16 +134,11 @@ impl<'a> March<'a> {
         Ends { begins: self.states[c].touch().is_some_and(|touch| touch.begins), ends: false }
     }
 
-    /// Whether the contact is closed, and its force may depend on the rate.
-    pub(super) fn force_by_rate(&self, c: usize) -> bool {
-        self.states[c].touch().is_some_and(|touch| touch.force_by_rate)
-    }
-
     /// Increase of the overlap of a contact up to the nodes without contact forces, and its rate if the force may depend on it.
     fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> (Nodal, Option<Nodal>) {
         let (tables, link) = (self.tables, &self.system.links[c]);
         let by_loads = |i: usize| self.loads.moved_on(c, (self.time_s, step_s(level)), turns, i);
-        if self.force_by_rate(c) {
+        if self.states[c].force_by_rate() {
             let (mut moved, mut rate) = tables.free_with_rates(self.system, level, link, &self.amplitude, &self.rate);
             for i in 0..Q {
                 let (more, faster) = by_loads(i);

@@ -88,10 +88,10 @@ impl Walk<'_> {
                 rate[i] += faster;
             }
             for (q, other) in stretch.forces.iter().enumerate() {
-                let Mobility { nodes, rates } = expansion.mobility(p * n + q);
-                add(&mut compression, 1.0, &apply(nodes, &other.force.nodal()));
+                let (Mobility { nodes, rates }, nodal) = (expansion.mobility(p * n + q), other.force.nodal());
+                add(&mut compression, 1.0, &apply(nodes, &nodal));
                 if let Some(rates) = rates {
-                    add(&mut rate, 1.0, &apply(rates, &other.force.nodal()));
+                    add(&mut rate, 1.0, &apply(rates, &nodal));
                 }
             }
             if !by_rate {
