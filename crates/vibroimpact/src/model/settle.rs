@@ -12,7 +12,9 @@
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
-//! with every further number: its errors are part of the differences, and restitutions agree when both have become small.
+//! with every further number: its errors are part of the differences, and restitutions agree when both have become small. Once it is
+//! as tight as possible, two impacts may have similar errors. The last is then solved again with a looser tolerance, and the change
+//! counts as the solver's error.
 //!
 //! More modes take more and shorter steps. If an impact reaches the limit of steps, the answer comes from the number of modes before, or
 //! from fewer modes if there was none before.
@@ -51,6 +53,9 @@ const TIGHTER: f64 = 1.0 / 30.0;
 /// The solver's part: this share of its tolerance, and of the change between runs whose tolerances differ by a factor of thirty.
 const SOLVER_FLOOR: f64 = 0.5;
 const SOLVER_CHANGE: f64 = 0.1;
+/// Factor of the tolerance of another solution that shows the solver's error, if the last two numbers of modes share the tightest
+/// tolerance.
+const LOOSER: f64 = 16.0;
 /// Beyond this many modes the number is raised after several contacts only while changes decrease: the last must be smaller than
 /// this share of the one two steps before. A single contact amplifies nothing, so that more modes help.
 const PATIENCE: usize = 400;
@@ -81,13 +86,15 @@ struct Rung {
     resolution: f64,
     /// Possible error of the remainder modes, from their energy.
     energy: f64,
-    /// Errors that are common to all numbers of modes; computed once everything else has converged.
-    tail: Option<Tail>,
+    /// Errors that other numbers of modes do not show; computed once everything else has converged.
+    unseen: Option<Unseen>,
 }
 
-/// Errors that the remainder modes of all numbers of modes have in common.
+/// Errors that changes between numbers of modes do not show.
 #[derive(Clone, Copy, Default)]
-struct Tail {
+struct Unseen {
+    /// Change by a looser tolerance, if the number of modes before had the same tolerance.
+    solver: f64,
     /// Possible change by their assumed shape.
     shape: f64,
     /// Possible change by the uncertainty of the static compliance.
@@ -103,29 +110,34 @@ impl Rung {
         let Impact { structure, .. } = &impact;
         let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
         let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
-        Ok(Rung { count, impact, solution, recording, resolution, energy, tail: None })
+        Ok(Rung { count, impact, solution, recording, resolution, energy, unseen: None })
     }
 
-    /// Change with other remainder modes.
-    fn find_tail(&mut self, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
+    /// Change with other remainder modes and, if it is wanted, with a looser tolerance.
+    fn find_unseen(&mut self, pose: &mut Pose, with_solver: bool, cost: &mut Cost) -> Result<(), InvalidInput> {
         let listed = matches!(pose.source, Source::Listed { .. });
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
         let per_impulse = restitution_per_impulse(&self.impact);
-        let mut changed = |other: Structure| {
-            let (other, _) = solve(pose, &Impact { structure: other, ..self.impact.clone() }, cost)?;
+        let mut changed = |other: Impact| {
+            let (other, _) = solve(pose, &other, cost)?;
             Ok::<_, InvalidInput>(Change::between(&other, &self.solution, per_impulse).size())
         };
-        let mut tail = Tail::default();
-        let Impact { structure, remainder_modes, .. } = &self.impact;
+        let on = |structure: Structure| Impact { structure, ..self.impact.clone() };
+        let mut unseen = Unseen::default();
+        let Impact { structure, remainder_modes, settings, .. } = &self.impact;
+        if with_solver {
+            let settings = Settings { tolerance: LOOSER * settings.tolerance, ..*settings };
+            unseen.solver = changed(Impact { settings, ..self.impact.clone() })?;
+        }
         if listed && *remainder_modes > 1 {
             // for a list the shape of the tail is an assumption, whose effect another shape shows
-            tail.shape = changed(with_one_remainder_mode(structure, *remainder_modes))?;
+            unseen.shape = changed(on(with_one_remainder_mode(structure, *remainder_modes)))?;
         }
         if uncertain_m_n > 0.0 {
-            tail.compliance = changed(with_softer_remainder(structure, *remainder_modes, uncertain_m_n))?;
+            unseen.compliance = changed(on(with_softer_remainder(structure, *remainder_modes, uncertain_m_n)))?;
         }
-        self.tail = Some(tail);
+        self.unseen = Some(unseen);
         Ok(())
     }
 
@@ -213,7 +225,7 @@ impl Rungs {
 
     /// Estimated change by the truncated modes, if it is known.
     fn left_out(&self) -> f64 {
-        let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
+        let Unseen { shape, compliance, .. } = self.last.unseen.unwrap_or_default();
         let changes: Vec<(f64, usize)> = self.changes().map(|(change, [_, to])| (change.size(), to)).collect();
         if self.is_complete() {
             return 0.0;
@@ -223,8 +235,13 @@ impl Rungs {
 
     /// The same where the numbers of modes end before the restitution has converged.
     fn left_out_at_the_end(&self) -> f64 {
-        let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
+        let Unseen { shape, compliance, .. } = self.last.unseen.unwrap_or_default();
         at_the_end(&self.sizes(), self.last.energy, self.last.resolution).max(shape) + compliance
+    }
+
+    /// Whether the last two had the tightest tolerance, so that their change may not show the solver's error.
+    fn share_tightest_tolerance(&self) -> bool {
+        self.all().take(2).all(|rung| rung.impact.settings.tolerance <= SOLVER_RANGE.0)
     }
 
     /// Possible error of the solver with the last number of modes.
@@ -235,7 +252,8 @@ impl Rungs {
             None if self.near().count() > 2 => self.sizes().first().copied().unwrap_or(1.0),
             None => 0.0,
         };
-        SOLVER_FLOOR * self.last.impact.settings.tolerance + SOLVER_CHANGE * change
+        let unseen = self.last.unseen.unwrap_or_default().solver;
+        SOLVER_FLOOR * self.last.impact.settings.tolerance + (SOLVER_CHANGE * change).max(unseen)
     }
 
     fn counts(&self) -> String {
@@ -292,8 +310,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             let third = Rung::new(pose, fewer(rungs.earlier[before].count), settings(tolerance, tightened), cost)?;
             rungs.earlier.insert(before, Rung { recording: None, ..third });
         }
-        if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.tail.is_none() {
-            rungs.last.find_tail(pose, cost)?;
+        if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.unseen.is_none() {
+            rungs.last.find_unseen(pose, several_contacts && rungs.share_tightest_tolerance(), cost)?;
         }
         let (solver, left_out) = (rungs.solver(), rungs.left_out());
         let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
@@ -330,8 +348,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
 }
 
 fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    if rungs.last.tail.is_none() && rungs.last.solution.restitution.is_some() {
-        rungs.last.find_tail(pose, cost)?;
+    if rungs.last.unseen.is_none() && rungs.last.solution.restitution.is_some() {
+        rungs.last.find_unseen(pose, false, cost)?;
     }
     let exhausted = matches!(pose.source, Source::Listed { .. }) && rungs.last.count == pose.source.most();
     let growing = match &pose.source {
