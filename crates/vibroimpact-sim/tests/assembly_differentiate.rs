@@ -173,6 +173,40 @@ fn a_dropped_ball_changes_with_everything() {
     assert!((by_height - speed.recip()).abs() < 1e-8 / speed, "{by_height}");
 }
 
+/// A ball bounces ever lower, and another one, pressed into the floor at the start, leaves it. The forces of such weak and short
+/// contacts are known to fewer digits than their impulses, and their derivatives to fewer still.
+#[test]
+fn derivatives_of_weak_contacts_are_within_their_uncertainty() {
+    let pose: Pose = |n| {
+        let [mass, height, stiffness, exponent, damping, end_s] = n.try_into().unwrap();
+        let law = HuntCrossley::new(stiffness, exponent, damping).unwrap().into();
+        let on_floor = |body, gap_m| Contact { sides: [of_mass(body, mass), Point::Ground], gap_m, law };
+        let weight = |body| Load { body, shape: vec![mass.sqrt()], force: Force::Constant { force_n: -9.81 } };
+        let bodies = vec![Body::mass(mass, height, -0.1), Body::mass(mass, 0.0, 0.1)];
+        let contacts = vec![on_floor(0, 0.0), on_floor(1, -1e-4 * height)];
+        (Assembly { bodies, contacts, loads: vec![weight(0), weight(1)] }, end_s)
+    };
+    for (exponent, damping) in [1.5, 2.2, 2.5, 2.9].into_iter().flat_map(|n| [0.25, 0.5, 1.0].map(|by| (n, by))) {
+        let case = Case { pose, numbers: vec![0.1, 0.01, 1e8, exponent, damping, 0.15] };
+        let [own, fine] = [1e-9, 1e-13].map(|tolerance| {
+            let found = case.differentiate(tolerance);
+            let of = |by: &Derivatives| own_outputs(&found, by);
+            all(&found.derivatives).iter().flat_map(of).collect::<Vec<_>>()
+        });
+        assert_eq!(own.len(), fine.len());
+        for ((name, own), (_, fine)) in own.iter().zip(&fine) {
+            let stated = own.uncertainty.unwrap_or(f64::INFINITY) + fine.uncertainty.unwrap_or(f64::INFINITY);
+            let error = (own.value - fine.value).abs();
+            assert!(
+                error <= stated,
+                "{name} at {exponent}, {damping}: {} {} {error:e} > {stated:e}",
+                own.value,
+                fine.value
+            );
+        }
+    }
+}
+
 fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {
     numbers.iter().map(|&omega_rad_s| BodyMode { omega_rad_s, damping_ratio }).collect()
 }

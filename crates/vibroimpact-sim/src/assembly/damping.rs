@@ -6,7 +6,6 @@
 
 use super::damping_form::{Form, all_by_parts, by_parts};
 use super::system::System;
-use crate::panel::dyadic::step_s;
 use crate::panel::lanes::Lanes;
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, add_motion, apply, dot};
 use crate::panel::vector::{LANES, sum_of_lanes, sum_over, vectorized};
@@ -89,7 +88,7 @@ impl Damping {
     }
 
     /// Computes everything for the step exponent `j` and these contacts that is not cached yet.
-    pub fn prepare(&self, system: &System, j: i32, contacts: &[usize]) {
+    pub fn prepare(&self, system: &System, h: f64, contacts: &[usize]) {
         let mut missing: Vec<Sum> = Vec::new();
         for (i, &c) in contacts.iter().enumerate() {
             for &other in contacts[..=i].iter().filter(|other| system.neighbours[c].contains(other)) {
@@ -104,7 +103,6 @@ impl Damping {
         if missing.is_empty() {
             return;
         }
-        let h = step_s(j);
         let count = system.modes.len();
         let mut by_mode = ByMode { free: [0; 3].map(|_| Vec::with_capacity(count)), cross: Vec::with_capacity(count) };
         vectorized(

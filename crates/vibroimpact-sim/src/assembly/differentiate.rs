@@ -9,6 +9,7 @@ use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Keep, Solver, follow};
 use super::stencil::Stencil;
 use super::system::System;
+use super::tables::Tables;
 use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
@@ -226,8 +227,7 @@ impl Solver<'_> {
             })
             .collect();
         let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
-        let mut expansions = Expansions::default();
-        let fine = self.along(settings, (&around, &changes, &asked), &mut expansions);
+        let fine = self.along(&self.tables, settings, (&around, &changes, &asked));
         let Differences { run, intervals, changes: fine, nearest_graze, nearest_miss } = fine;
         // the coarser run ends at the same time as this one, which is fixed unless it is the requested end
         let (end_s, ends) = match run.outcome {
@@ -238,7 +238,7 @@ impl Solver<'_> {
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
         let coarse = match fine.iter().any(Result::is_ok) {
-            true => self.along(&coarser, (&around, &changes, &ends), &mut expansions).changes,
+            true => self.along(self.between(), &coarser, (&around, &changes, &ends)).changes,
             false => Vec::new(),
         };
         let derivatives = fine.into_iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
@@ -257,7 +257,7 @@ impl Solver<'_> {
         settings: &Settings,
     ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
-        let Solver { posed, system, tables } = self;
+        let Solver { posed, system, tables, .. } = self;
         let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), Keep::Motion);
         if run.outcome != Outcome::End {
             return Ok((run.outcome, Err(NoDerivative::Outcome)));
@@ -267,7 +267,8 @@ impl Solver<'_> {
         let changes: Vec<Change> =
             of(false).chain(of(true)).map(|(place, of_rate)| Change::of_start(system, place, of_rate)).collect();
         let fixed = vec![0.0; changes.len()];
-        let found = tangents(posed, system, &record.stretches, (&changes, Some(&fixed)), &mut Expansions::default());
+        let found =
+            tangents(posed, system, &record.stretches, (&changes, Some(&fixed)), &mut Expansions::new(tables.steps));
         let column = |tangent: Result<Tangent, NoDerivative>| {
             let tangent = tangent?;
             let of = |values: &[f64]| places().map(|place| values[place]).collect::<Vec<f64>>();
@@ -314,14 +315,14 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run with its derivatives; `end_s` has those of the requested time.
+    /// One run in the steps of these tables, with its derivatives; `end_s` has those of the requested time.
     fn along(
         &self,
+        tables: &Tables,
         settings: &Settings,
         (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
-        expansions: &mut Expansions,
     ) -> Differences {
-        let Solver { posed, system, tables } = self;
+        let Solver { posed, system, .. } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
         let (run, record) =
             follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, Keep::NearestMiss);
@@ -334,7 +335,10 @@ impl Solver<'_> {
         let stopped = matches!(run.outcome, Outcome::Stopped(_));
         let found = match stopped {
             true => Err(NoDerivative::Outcome),
-            false => tangents(posed, system, &record.stretches, (changes, fixed), expansions),
+            false => {
+                let expansions = &mut Expansions::new(tables.steps);
+                tangents(posed, system, &record.stretches, (changes, fixed), expansions)
+            }
         };
         let (intervals, nearest_miss) = (watch.0, record.nearest_miss);
         let found = match found {

@@ -4,7 +4,6 @@
 use super::enclosure::{FlightBounds, bend_of_loads, first_closing};
 use super::motion::March;
 use super::terminal::{self, series_of};
-use crate::panel::dyadic::{level_within, step_s};
 
 /// Power series are used once the next certified step is shorter than their reach by this many step exponents.
 const WINDOW: i32 = 2;
@@ -27,14 +26,18 @@ impl<'a> March<'a> {
             (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
             return true;
         }
-        let near = level_within(self.reach);
+        let near = self.tables.steps.level_within(self.reach);
         if go >= lasting {
-            if lasting <= self.reach { self.coast(lasting, true) } else { self.rotate(level_within(lasting)) }
-        } else if level_within(go) < near + WINDOW {
-            self.rotate(level_within(go.min(lasting)));
+            if lasting <= self.reach {
+                self.coast(lasting, true)
+            } else {
+                self.rotate(self.tables.steps.level_within(lasting))
+            }
+        } else if self.tables.steps.level_within(go) < near + WINDOW {
+            self.rotate(self.tables.steps.level_within(go.min(lasting)));
         } else {
-            let by_level = lasting > step_s(near);
-            let window = if by_level { step_s(near) } else { lasting };
+            let by_level = lasting > self.tables.steps.step_s(near);
+            let window = if by_level { self.tables.steps.step_s(near) } else { lasting };
             let (mut first, mut clear): (Option<(usize, f64)>, f64) = (None, window);
             for c in 0..self.states.len() {
                 if self.clear_until(c) >= self.time_s + window {
@@ -67,10 +70,10 @@ impl<'a> March<'a> {
     }
 
     pub(super) fn rotate(&mut self, level: i32) {
-        self.flown = step_s(level);
-        self.show(step_s(level), &[], &[], &[]);
+        self.flown = self.tables.steps.step_s(level);
+        self.show(self.tables.steps.step_s(level), &[], &[], &[]);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
-        self.pass(step_s(level));
+        self.pass(self.tables.steps.step_s(level));
     }
 
     /// Free motion of any length within the reach of the series; with `whole`, to the next break or the end.

@@ -6,7 +6,6 @@ use super::event::{Beginning, EventFunction, Verdict};
 use super::interpolation::ORDERS;
 use super::motion::{MAGNIFIED, March, Target};
 use super::state::Touch;
-use crate::panel::dyadic::level_within;
 use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR, slopes};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
@@ -47,7 +46,7 @@ impl<'a> March<'a> {
             let state = &self.states[c];
             let mut rho = [0.0; ORDERS];
             if enclosed {
-                let missed = self.tables.missed(self.system, level_within(h));
+                let missed = self.tables.missed(self.system, self.tables.steps.level_within(h));
                 rho = of_panel(
                     self.system,
                     missed,

@@ -7,7 +7,6 @@ use super::motion::{Horizon, March, Target};
 use super::terminal::{Landed, Window};
 use super::transition::SINGULAR;
 use super::trial::{NEWTON_SHARE, Trial};
-use crate::panel::dyadic::level_within;
 use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Q};
 
@@ -32,12 +31,14 @@ impl<'a> March<'a> {
         let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length, |c| self.begins(c));
         let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
-            return self.refine(self.level.max(level_within(length)) + 1);
+            return self.refine(self.level.max(self.tables.steps.level_within(length)) + 1);
         };
         self.watch_window(&mut window, &mut landed);
         match self.judge_landed(&window, &landed) {
             Judgement::Meets(target, place) => self.head_for(target, place, length),
-            _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
+            _ if self.excess(&window, &landed) > 1.0 => {
+                self.refine(self.level.max(self.tables.steps.level_within(length)) + 1)
+            }
             _ => self.commit_landed(&window, &landed),
         }
     }
@@ -103,7 +104,7 @@ impl<'a> March<'a> {
         };
         let Some(mut landed) = self.locate(&window, target, at, expected, longest) else {
             // the event is further away than expected: continue until a panel meets it again
-            return self.refine((self.level + 1).max(level_within(longest)));
+            return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
         self.watch_window(&mut window, &mut landed);
         let length = landed.length;

@@ -47,7 +47,6 @@ use super::solution::Ledger;
 use super::system::System;
 use super::tables::Tables;
 use super::wave::{Wave, integral, turned_mean};
-use crate::panel::dyadic::{level_within, step_s};
 use crate::panel::legendre::Legendre;
 use num_complex::Complex64;
 use std::ops::{AddAssign, Range};
@@ -151,11 +150,9 @@ impl Dissipation {
         }
         self.land(start);
         let (system, motion) = (start.system, (start.amplitude, start.rate));
-        let level = level_within(h);
-        self.lost_j += if step_s(level) == h {
-            tables.damping(system, level, contacts).lost(system, &self.damped, motion, contacts, force)
-        } else {
-            lost_within(system, &self.damped, h, motion, contacts, force)
+        self.lost_j += match tables.steps.level_of(h) {
+            Some(level) => tables.damping(system, level, contacts).lost(system, &self.damped, motion, contacts, force),
+            None => lost_within(system, &self.damped, h, motion, contacts, force),
         };
     }
 

@@ -14,7 +14,7 @@ use super::solution::{Outcome, Reason};
 use super::state::State;
 use super::terminal::SHORT;
 use super::trial::Trial;
-use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
+use crate::panel::dyadic::{J_MAX, J_MIN, Steps};
 use contact_models::{ContactLaw, LARGEST, check_contract};
 
 /// Share of the time to an expected event that one panel may take.
@@ -103,10 +103,14 @@ impl<'a> March<'a> {
     fn contact(&mut self, trial: &mut Trial<'a>) {
         let lasting = self.lasting();
         // a terminal panel is not better than a panel of similar length
-        let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
+        let usual = 2.0 * self.tables.steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
         // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
         let weighted = self.horizon.is_some_and(|horizon| self.ends_at(horizon.target).ends);
         let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
+        if self.tables.steps == Steps::BETWEEN && !self.stepped {
+            // a terminal panel from event to event would have the same length, and the same error, in all runs
+            reach = 0.0;
+        }
         let mut level = self.level;
         if let Some(Horizon { target, at_s }) = self.horizon {
             let left = (at_s - self.time_s).max(0.0);
@@ -118,20 +122,20 @@ impl<'a> March<'a> {
                 self.horizon = None;
                 return self.land(target, left, reach.min(lasting));
             }
-            level = level.max(level_within(SHARE * left));
+            level = level.max(self.tables.steps.level_within(SHARE * left));
         }
-        if step_s(level) > lasting {
+        if self.tables.steps.step_s(level) > lasting {
             if lasting <= reach {
                 return self.land_at(lasting);
             }
-            level = level_within(lasting);
+            level = self.tables.steps.level_within(lasting);
         }
         self.try_panel(level, trial);
     }
 
     /// Computes a panel with closed contacts, and accepts or rejects it.
     fn try_panel(&mut self, level: i32, trial: &mut Trial<'a>) {
-        let h = step_s(level);
+        let h = self.tables.steps.step_s(level);
         trial.closed = self.closed(&mut trial.contacts);
         if !self.attempt(level, trial) {
             return self.refine(level + 1);

@@ -86,6 +86,8 @@ pub(crate) struct March<'a> {
     pub(super) ask_rest_at: u64,
     /// Number of accepted panels at which the laws are checked, once.
     pub(super) try_laws_at: u64,
+    /// Whether the last panel was a step with closed contacts.
+    pub(super) stepped: bool,
     /// Length of the last panel of flight (s).
     pub(super) flown: f64,
     pub(super) intervals: u64,
@@ -155,6 +157,7 @@ impl<'a> March<'a> {
             reach: reach_s(fastest),
             ask_rest_at: 0,
             try_laws_at: 0,
+            stepped: false,
             flown: 0.0,
             intervals: 0,
             statistics_from_s: if settings.statistics_from_s > 0.0 {
@@ -328,6 +331,7 @@ impl<'a> March<'a> {
     pub(super) fn pass(&mut self, h: f64) {
         self.loads.push_rigid(self.time_s, h, &mut self.amplitude, &mut self.rate);
         self.time_s += h;
+        self.stepped = false;
     }
 
     /// The end of the run, the start of the statistics and the breaks of loads are reached exactly.

@@ -3,7 +3,7 @@
 
 use super::system::System;
 use super::tables::{Response, Tables, with_rigid_modes};
-use crate::panel::dyadic::{Levels, step_s};
+use crate::panel::dyadic::Levels;
 use crate::panel::forcing::Order;
 use crate::panel::legendre::Matrix;
 
@@ -47,7 +47,7 @@ impl Responses {
                 if pair.is_none() {
                     *pair = Some(found.len());
                     let inverse_mass = system.links[c].shared_rigid(&system.links[other]);
-                    found.push(tables.elastic_response(j, c, other).with_rigid(inverse_mass, step_s(j)));
+                    found.push(tables.elastic_response(j, c, other).with_rigid(inverse_mass, tables.steps.step_s(j)));
                     rates.push(None);
                 }
             }
@@ -77,7 +77,7 @@ impl Responses {
             let Some(number) = number((c, other)) else { continue };
             let inverse_mass = system.links[c].shared_rigid(&system.links[other]);
             let elastic = tables.elastic_rates(j, c, other);
-            rates[number] = Some(with_rigid_modes(elastic, Order::Velocity, inverse_mass, step_s(j)));
+            rates[number] = Some(with_rigid_modes(elastic, Order::Velocity, inverse_mass, tables.steps.step_s(j)));
         }
     }
 

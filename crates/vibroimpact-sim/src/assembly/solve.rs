@@ -9,9 +9,11 @@ use super::responses::Responses;
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
 use super::tables::Tables;
+use crate::panel::dyadic::Steps;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::fmt;
+use std::sync::OnceLock;
 
 /// Computes the motion of an assembly from its start to the requested end, and notifies the observer.
 ///
@@ -48,6 +50,8 @@ pub struct Solver<'a> {
     pub(crate) posed: Posed<'a>,
     pub(crate) system: System,
     pub(crate) tables: Tables,
+    /// With steps of which none is among those of the other tables.
+    between: OnceLock<Tables>,
 }
 
 impl fmt::Debug for Solver<'_> {
@@ -65,8 +69,13 @@ impl<'a> Solver<'a> {
         assembly.check()?;
         let posed = assembly.posed();
         let system = System::new(&posed);
-        let tables = Tables::new(&system);
-        Ok(Solver { posed, system, tables })
+        let tables = Tables::new(&system, Steps::OF_SECOND);
+        Ok(Solver { posed, system, tables, between: OnceLock::new() })
+    }
+
+    /// Tables for a run that shares no step, and therefore no error, with those in the other tables.
+    pub(crate) fn between(&self) -> &Tables {
+        self.between.get_or_init(|| Tables::new(&self.system, Steps::BETWEEN))
     }
 
     /// As [`run`].

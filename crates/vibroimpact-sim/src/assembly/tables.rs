@@ -1,4 +1,4 @@
-//! Tables of panels `h = 2^-j` s: free motion and forced response of every mode, and the response of every contact to
+//! Tables of panels `h = 2^-j` units of time: free motion and forced response of every mode, and the response of every contact to
 //! the force of another. They do not depend on the masses of rigid bodies. Each table is computed at first use and never changes,
 //! so that runs and threads can share it and have the same results.
 
@@ -6,7 +6,7 @@ use super::damping::Damping;
 use super::excess::{Excess, OnPanel, Pushed, has_fast_modes};
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
-use crate::panel::dyadic::{Levels, Rotation, step_s};
+use crate::panel::dyadic::{Levels, Rotation, Steps};
 use crate::panel::forcing::{ByParts, Compliance, Order, Way, by_quadrature, by_series};
 use crate::panel::legendre::{
     BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, leave_out_infinite, work_of_unit_forces,
@@ -59,6 +59,8 @@ struct Level {
 }
 
 pub(crate) struct Tables {
+    /// Lengths of the panels.
+    pub steps: Steps,
     levels: Levels<Level>,
     /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where requested.
     kernels: Vec<OnceLock<[f64; TAYLOR]>>,
@@ -66,32 +68,32 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    pub fn new(system: &System) -> Tables {
+    pub fn new(system: &System, steps: Steps) -> Tables {
         let contacts = system.links.len();
-        Tables { levels: Levels::default(), kernels: unset(contacts), contacts }
+        Tables { steps, levels: Levels::default(), kernels: unset(contacts), contacts }
     }
 
     /// Free motion over one panel with the step exponent `j`.
     pub fn rotation(&self, system: &System, j: i32) -> &Rotation {
-        self.level(j).rotation.get_or_init(|| Rotation::new(&system.modes, step_s(j)))
+        self.level(j).rotation.get_or_init(|| Rotation::new(&system.modes, self.steps.step_s(j)))
     }
 
     /// Interpolation errors for the step exponent `j`.
     pub fn missed(&self, system: &System, j: i32) -> &Missed {
-        self.level(j).missed.get_or_init(|| Missed::new(system, step_s(j)))
+        self.level(j).missed.get_or_init(|| Missed::new(system, self.steps.step_s(j)))
     }
 
     /// Dissipation by modal damping for the step exponent `j` with these closed contacts; only for the energy balance.
     pub fn damping(&self, system: &System, j: i32, contacts: &[usize]) -> &Damping {
         let damping = self.level(j).damping.get_or_init(|| Damping::new(system));
-        damping.prepare(system, j, contacts);
+        damping.prepare(system, self.steps.step_s(j), contacts);
         damping
     }
 
     /// Work of these closed contacts that quadrature misses, for the step exponent `j`; only for the energy balance. `None` if it
     /// misses nothing. Needs [`Tables::prepare`].
     pub fn excess(&self, system: &System, j: i32, contacts: &[usize]) -> Option<&Excess> {
-        if !has_fast_modes(system, step_s(j), contacts) {
+        if !has_fast_modes(system, self.steps.step_s(j), contacts) {
             return None;
         }
         let (rotation, Expanded { forced, .. }) = (self.rotation(system, j), self.expanded(j)?);
@@ -99,8 +101,10 @@ impl Tables {
             let free = rotation.of(k);
             OnPanel { at_nodes: forced.at_nodes[k], at_end: (free.p11_less_1, free.p12), pushed: forced.pushed(k) }
         };
-        let excess =
-            self.level(j).excess.get_or_init(|| Excess::new(system, step_s(j), (0..system.modes.len()).map(on_panel)));
+        let excess = self
+            .level(j)
+            .excess
+            .get_or_init(|| Excess::new(system, self.steps.step_s(j), (0..system.modes.len()).map(on_panel)));
         let damping = (system.most_damping > 0.0).then(|| self.damping(system, j, contacts));
         for (i, &c) in contacts.iter().enumerate() {
             let missing = |other: usize| system.share_elastic_modes(c, other) && !excess.knows(system, (c, other));
@@ -148,11 +152,11 @@ impl Tables {
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
         let mut found = None;
         let expanded = self.level(j).expanded.get_or_init(|| {
-            let (forced, sums) = Forced::new(system, step_s(j), self.rotation(system, j + 1), &weights);
+            let (forced, sums) = Forced::new(system, self.steps.step_s(j), self.rotation(system, j + 1), &weights);
             found = Some(sums);
             Expanded { forced, elastic: unset(count), elastic_rates: unset(count), by_parts: OnceLock::new() }
         });
-        let again = || again(system, step_s(j), (&weights, Order::Displacement), &expanded.by_parts);
+        let again = || again(system, self.steps.step_s(j), (&weights, Order::Displacement), &expanded.by_parts);
         let found = found.unwrap_or_else(again);
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
@@ -169,7 +173,7 @@ impl Tables {
         let wanted = |pair: &(usize, usize)| system.share_elastic_modes(pair.0, pair.1) && rates(*pair).get().is_none();
         let pairs: Vec<(usize, usize)> = pairs.iter().copied().filter(wanted).collect();
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
-        let found = again(system, step_s(j), (&weights, Order::Velocity), &expanded.by_parts);
+        let found = again(system, self.steps.step_s(j), (&weights, Order::Velocity), &expanded.by_parts);
         for (pair, nodes) in pairs.into_iter().zip(found) {
             let _ = rates(pair).set(Box::new(nodes));
         }
@@ -602,7 +606,7 @@ mod tests {
     #[test]
     fn the_response_of_two_bodies_is_the_sum_of_theirs() {
         let nodes = |system: &System| {
-            let tables = Tables::new(system);
+            let tables = Tables::new(system, Steps::OF_SECOND);
             tables.prepare(system, 0, &[0], &[0]);
             tables.elastic_response(0, 0, 0).nodes
         };

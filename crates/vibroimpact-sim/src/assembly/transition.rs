@@ -7,7 +7,7 @@ use super::motion::{March, Target};
 use super::solution::Interval;
 use super::state::{Phase, State, Touch};
 use super::terminal::{series_of, value};
-use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
+use crate::panel::dyadic::{J_MAX, J_MIN};
 use crate::panel::ends::EXPONENT;
 use crate::panel::peak::Peak;
 use contact_models::{After, Boundary, Branch, Memory, boundaries};
@@ -315,7 +315,7 @@ impl<'a> March<'a> {
         let Some(touch) = state.touch() else { return J_MIN };
         self.counts.law_evaluations += 1;
         let drag = self.law(c).force(&touch.branch, state.overlap, state.rate).per_rate_n_s_m.abs();
-        level_within((drag * self.system.links[c].mobility).recip())
+        self.tables.steps.level_within((drag * self.system.links[c].mobility).recip())
     }
 
     /// Step exponent of the longest panel on which a force that begins at first touch is represented within the tolerance.
@@ -331,7 +331,7 @@ impl<'a> March<'a> {
             false => tolerance / SINGULAR,
         };
         let small = |j: i32| {
-            let h = step_s(j);
+            let h = self.tables.steps.step_s(j);
             let within = h.min(self.reach);
             let [mut compression, mut rate, _] = value(&series, within);
             if rate < 0.0 {
@@ -342,7 +342,7 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, rate).force_n * h <= allowed
         };
         // the force at the end of a panel grows with the panel
-        let mut coarse = if self.reach.is_finite() { level_within(4.0 * self.reach) } else { J_MIN };
+        let mut coarse = if self.reach.is_finite() { self.tables.steps.level_within(4.0 * self.reach) } else { J_MIN };
         let (mut fine, mut ahead) = (coarse, 1);
         while fine < J_MAX && !small(fine) {
             (coarse, fine, ahead) = (fine + 1, (fine + ahead).min(J_MAX), 2 * ahead);

@@ -5,7 +5,6 @@ use super::collocate::{Collocated, Mobility, Unknown, collocate};
 use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
-use crate::panel::dyadic::step_s;
 use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, slopes};
 
@@ -37,7 +36,7 @@ pub(super) struct Trial<'a> {
 impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
-        let h = step_s(level);
+        let h = self.tables.steps.step_s(level);
         let Trial { contacts, closed, unknowns, free, solved, force, moved, end, turns } = trial;
         let closed = *closed;
         self.responses.prepare(self.system, self.tables, level, contacts, contacts);
@@ -137,7 +136,7 @@ impl<'a> March<'a> {
     /// Increase of the overlap of a contact up to the nodes without contact forces, and its rate if the force may depend on it.
     fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> (Nodal, Option<Nodal>) {
         let (tables, link) = (self.tables, &self.system.links[c]);
-        let by_loads = |i: usize| self.loads.moved_on(c, (self.time_s, step_s(level)), turns, i);
+        let by_loads = |i: usize| self.loads.moved_on(c, (self.time_s, self.tables.steps.step_s(level)), turns, i);
         if self.states[c].force_by_rate() {
             let (mut moved, mut rate) = tables.free_with_rates(self.system, level, link, &self.amplitude, &self.rate);
             for i in 0..Q {
@@ -152,7 +151,7 @@ impl<'a> March<'a> {
     }
 
     pub(super) fn commit(&mut self, level: i32, trial: &Trial) {
-        let h = step_s(level);
+        let h = self.tables.steps.step_s(level);
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
         self.show(h, &contacts[..closed], &trial.force, &trial.solved);
         self.account_for(level, trial);
@@ -162,6 +161,7 @@ impl<'a> March<'a> {
             self.tables.push(level, link, &trial.force[i], &mut self.amplitude, &mut self.rate);
         }
         self.pass(h);
+        self.stepped = true;
         self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
     }
 
@@ -179,7 +179,7 @@ impl<'a> March<'a> {
             return;
         }
         for (&c, force) in closed.iter().zip(&trial.force) {
-            self.contact_work_j += self.loads.work_missed_j(c, step_s(level), &trial.turns, force);
+            self.contact_work_j += self.loads.work_missed_j(c, self.tables.steps.step_s(level), &trial.turns, force);
         }
         if let Some(excess) = self.tables.excess(self.system, level, closed) {
             self.contact_work_j += excess.work_j(self.system, (&self.amplitude, &self.rate), closed, &trial.force);

@@ -12,6 +12,7 @@ use crate::assembly::solve::Keep;
 use crate::assembly::system::System;
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use crate::concurrent::both;
+use crate::panel::dyadic::Steps;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
@@ -240,7 +241,7 @@ impl Solver {
         };
         let changes: Vec<Change> = around.changes.iter().zip(around.parameters).zip(&laws).map(in_unit).collect();
         let stretches = &run.record.stretches;
-        let found = tangents(&posed, &system, stretches, (&changes, None), &mut Expansions::default())?;
+        let found = tangents(&posed, &system, stretches, (&changes, None), &mut Expansions::new(Steps::OF_SECOND))?;
         let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
         let pick = |values: &[f64]| {
             let mut all = vec![0.0; self.modes().len()];

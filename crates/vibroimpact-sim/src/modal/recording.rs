@@ -9,7 +9,6 @@ use crate::assembly::load::Loads;
 use crate::assembly::solve::Record;
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
-use crate::panel::dyadic::{level_within, step_s};
 use crate::panel::legendre::Legendre;
 use contact_models::ContactLaw;
 use std::fmt;
@@ -74,9 +73,8 @@ pub(crate) fn work_and_damping_j(system: &System, record: &Record, tables: &Tabl
         dissipation.land(&start);
         let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().map(|of| (of.contact, of.force)).unzip();
         dissipation.panel(&start, tables, *length_s, &contacts, &force);
-        let level = level_within(*length_s);
         if !contacts.is_empty()
-            && step_s(level) == *length_s
+            && let Some(level) = tables.steps.level_of(*length_s)
             && let Some(excess) = tables.excess(system, level, &contacts)
         {
             work_j += excess.work_j(system, (amplitude, rate), &contacts, &force);

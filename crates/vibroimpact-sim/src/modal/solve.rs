@@ -13,6 +13,7 @@ use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::assembly::{self, Assembly, Interval, Observer};
 use crate::concurrent::both;
+use crate::panel::dyadic::Steps;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::f64::consts::SQRT_2;
@@ -367,7 +368,8 @@ impl Solver {
 
     /// The tables for a system of the structure, with or without a striker.
     fn tables(&self, system: &System) -> &Arc<Tables> {
-        self.tables[usize::from(system.bodies.len() == 1)].get_or_init(|| Arc::new(Tables::new(system)))
+        self.tables[usize::from(system.bodies.len() == 1)]
+            .get_or_init(|| Arc::new(Tables::new(system, Steps::OF_SECOND)))
     }
 
     /// The solver for this motion before the impact: by it, modes can move the contact that the contact does not excite.

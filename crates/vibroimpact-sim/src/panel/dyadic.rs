@@ -1,25 +1,51 @@
-//! Panels of `h = 2^-j` s, whose tables can be cached.
+//! Panels of `h = 2^-j` units of time, whose tables can be cached.
 
 use super::oscillator::{BodyMode, Propagator, propagate};
 use super::rows::Rows;
 use super::vector::{change_each, vectorized};
 use std::array;
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of a second.
+/// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of the unit of time.
 pub(crate) const J_MIN: i32 = -120;
 pub(crate) const J_MAX: i32 = 200;
 
-/// Step length (s) for a step exponent.
-pub(crate) fn step_s(j: i32) -> f64 {
-    f64::from_bits(((1023 - j) as u64) << 52)
+/// The step lengths of a run: parts of a unit of time. Runs of different tolerances share many steps, and with them a part of their
+/// errors, if the unit is the same; in another unit no step is the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Steps {
+    unit_s: f64,
 }
 
-/// Step exponent of the longest step that is not longer than `t` (s), a positive number.
-pub(crate) fn level_within(t: f64) -> i32 {
-    let exponent = ((t.to_bits() >> 52) & 0x7ff) as i32 - 1023;
-    (-exponent).clamp(J_MIN, J_MAX)
+impl Steps {
+    /// Parts of a second.
+    pub const OF_SECOND: Steps = Steps { unit_s: 1.0 };
+    /// Parts of `1/sqrt(2)` s, each halfway between two parts of a second on a logarithmic scale.
+    pub const BETWEEN: Steps = Steps { unit_s: FRAC_1_SQRT_2 };
+
+    /// Step length (s) for a step exponent.
+    #[inline]
+    pub fn step_s(self, j: i32) -> f64 {
+        self.unit_s * f64::from_bits(((1023 - j) as u64) << 52)
+    }
+
+    /// Step exponent of the longest step that is not longer than `t` (s), a positive number.
+    #[inline]
+    pub fn level_within(self, t: f64) -> i32 {
+        let exponent = (((t / self.unit_s).to_bits() >> 52) & 0x7ff) as i32 - 1023;
+        let level = (-exponent).clamp(J_MIN, J_MAX);
+        // the quotient may have been rounded up to a power of two
+        if self.step_s(level) > t { (level + 1).min(J_MAX) } else { level }
+    }
+
+    /// Step exponent of a panel of this length (s), if it is a step.
+    #[inline]
+    pub fn level_of(self, h: f64) -> Option<i32> {
+        let level = self.level_within(h);
+        (self.step_s(level) == h).then_some(level)
+    }
 }
 
 /// Number of neighbouring step exponents in a group: a run needs a few neighbouring ones.
@@ -123,10 +149,14 @@ mod tests {
 
     #[test]
     fn levels_are_the_powers_of_two_that_fit() {
-        for t in [1.0, 0.7, 0.5, 1e-9, 3.3e-20, 1e20] {
-            let h = step_s(level_within(t));
-            assert!(h <= t && 2.0 * h > t, "{t}");
+        for steps in [Steps::OF_SECOND, Steps::BETWEEN] {
+            let before = (-100..100).map(|j| steps.step_s(j).next_down());
+            for t in [1.0, 0.7, 0.5, 1e-9, 3.3e-20, 1e20].into_iter().chain(before) {
+                let h = steps.step_s(steps.level_within(t));
+                assert!(h <= t && 2.0 * h > t, "{steps:?} {t}");
+            }
+            assert!((-100..100).all(|j| steps.level_of(steps.step_s(j)) == Some(j)), "{steps:?}");
+            assert_eq!((steps.level_within(1e300), steps.level_within(1e-300)), (J_MIN, J_MAX));
         }
-        assert_eq!((level_within(1e300), level_within(1e-300)), (J_MIN, J_MAX));
     }
 }

@@ -5,7 +5,7 @@ use crate::assembly::collocate::Mobility;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tables::{Forced, rates_at_nodes, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
-use crate::panel::dyadic::{Rotation, level_within, step_s};
+use crate::panel::dyadic::{Rotation, Steps};
 use crate::panel::forcing::Order;
 use crate::panel::legendre::{Matrix, Q, add};
 use std::collections::{BTreeMap, HashMap};
@@ -58,10 +58,17 @@ impl Expansion {
 }
 
 /// Cached expansions of panels by length, closed contacts and whether rates are included, for one system and the same parameters.
-#[derive(Default)]
-pub(crate) struct Expansions(HashMap<(u64, Vec<usize>, bool), Rc<Expansion>>);
+pub(crate) struct Expansions {
+    /// Panels of other lengths do not return.
+    steps: Steps,
+    cached: HashMap<(u64, Vec<usize>, bool), Rc<Expansion>>,
+}
 
 impl Expansions {
+    pub fn new(steps: Steps) -> Expansions {
+        Expansions { steps, cached: HashMap::new() }
+    }
+
     /// The expansion for panels of this length with these contacts closed, with rates or without.
     pub(super) fn of(
         &mut self,
@@ -71,7 +78,7 @@ impl Expansions {
         (closed, by_rate): (&[usize], bool),
     ) -> Rc<Expansion> {
         let key = (h.to_bits(), closed.to_vec(), by_rate);
-        if let Some(kept) = self.0.get(&key) {
+        if let Some(kept) = self.cached.get(&key) {
             return kept.clone();
         }
         let rotation = Rotation::new(&system.modes, h);
@@ -142,8 +149,8 @@ impl Expansions {
         let mut expansion = Expansion { rotation, forced, responses, rates, changed, critical };
         expansion.add_critical(changes, &weights[..n * n]);
         let expansion = Rc::new(expansion);
-        if step_s(level_within(h)) == h {
-            self.0.insert(key, expansion.clone());
+        if self.steps.level_of(h).is_some() {
+            self.cached.insert(key, expansion.clone());
         }
         expansion
     }
