@@ -207,6 +207,45 @@ fn derivatives_of_weak_contacts_are_within_their_uncertainty() {
     }
 }
 
+/// The motion of a mass under a harmonic force, for frequency, phase, height and speed at the start.
+fn driven(n: &[f64]) -> (Assembly<Law>, f64) {
+    let [omega_rad_s, phase_rad, height, speed, end_s] = n.try_into().unwrap();
+    let force = Force::Harmonic { force_n: 20.0, omega_rad_s, phase_rad };
+    let loads = vec![Load { body: 0, shape: vec![0.1f64.sqrt().recip()], force }];
+    let law = Hertz::new(1e8).unwrap().into();
+    let contacts = vec![Contact { sides: [of_mass(0, 0.1), Point::Ground], gap_m: 0.0, law }];
+    (Assembly { bodies: vec![Body::mass(0.1, height, speed)], contacts, loads }, end_s)
+}
+
+/// After 20,000 periods the neighbouring values of the frequency are out of phase.
+#[test]
+fn derivatives_by_the_frequency_of_a_load_hold_at_late_times() {
+    let (omega, phase, end_s) = (628.0, 0.7f64, 200.0);
+    let speed = 20.0 / (0.1 * omega);
+    let case = Case { pose: driven, numbers: vec![omega, phase, 1.0, -speed * phase.cos(), end_s] };
+    let found = case.differentiate(1e-9);
+    let (before, after) = (phase.sin_cos(), (omega * end_s + phase).sin_cos());
+    let by_omega = speed * (end_s * after.0 - (before.1 - after.1) / omega);
+    let velocities = [by_omega, speed * (after.0 - before.0)];
+    for (by, expected) in found.derivatives.iter().zip(velocities) {
+        let velocity = by.as_ref().unwrap().contacts[0].velocity_m_s[0];
+        assert!((velocity.value - expected).abs() < 1e-8 * expected.abs(), "{velocity:?} {expected}");
+    }
+}
+
+/// Just after the start the motion under a load is much smaller than its steady motion.
+#[test]
+fn derivatives_by_a_harmonic_load_hold_at_early_times() {
+    let (omega, phase, speed) = (628.0, 0.7f64, 20.0 / (0.1 * 628.0));
+    let case = Case { pose: driven, numbers: vec![omega, phase, 1e-5, -0.5, 1e-3] };
+    let found = case.differentiate(1e-9);
+    let start = found.derivatives[1].as_ref().unwrap().contacts[0].intervals[0].start_s;
+    let angle = omega * found.intervals[0][0].start_s;
+    let turned = -2.0 * (0.5 * angle).sin() * (phase + 0.5 * angle).sin();
+    let expected = speed / omega * (angle * phase.sin() + turned) / (-0.5 - speed * turned);
+    assert!((start.value - expected).abs() < 1e-9 * expected.abs(), "{start:?} {expected}");
+}
+
 fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {
     numbers.iter().map(|&omega_rad_s| BodyMode { omega_rad_s, damping_ratio }).collect()
 }

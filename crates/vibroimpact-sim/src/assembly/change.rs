@@ -7,7 +7,7 @@
 use super::load_change::LoadChange;
 use super::problem::Posed;
 use super::stencil::Stencil;
-use super::system::{Span, System, joined};
+use super::system::{Link, Span, System, joined};
 use contact_models::ContactLaw;
 
 /// Limit of `|1 - zeta^2|`. Closer to critical damping `c_1` and `c_2` would magnify the panels' error of the force times the time.
@@ -45,15 +45,20 @@ impl<'a> Change<'a> {
         stencil: Stencil<4>,
     ) -> Change<'a> {
         let n = system.modes.len();
+        let psi = |(c, link): (usize, &Link)| {
+            let spans = posed.map(|posed| joined(&system.sides(posed.sides[c])));
+            difference(&link.spans, &spans, &stencil)
+        };
+        let psi: Vec<Vec<Span>> = system.links.iter().enumerate().map(psi).collect();
         let mut change = Change {
             amplitude: vec![0.0; n],
             rate: vec![0.0; n],
             gap_m: (0..system.links.len()).map(|c| stencil.slope(posed.map(|posed| posed.gaps_m[c]))).collect(),
-            psi: Vec::new(),
+            loads: LoadChange::new(system, &psi, posed, stencil),
+            psi,
             fade: vec![0.0; n],
             stretch: vec![0.0; n],
             laws,
-            loads: LoadChange::new(posed, stencil),
             stencil,
             moves_modes: false,
             critical: Vec::new(),
@@ -83,10 +88,6 @@ impl<'a> Change<'a> {
             let (amplitude, rate) = loads.steady(system, 0.0);
             change.amplitude.iter_mut().zip(&amplitude).for_each(|(change, steady)| *change -= steady);
             change.rate.iter_mut().zip(&rate).for_each(|(change, steady)| *change -= steady);
-        }
-        for (c, link) in system.links.iter().enumerate() {
-            let spans = posed.map(|posed| joined(&system.sides(posed.sides[c])));
-            change.psi.push(difference(&link.spans, &spans, &stencil));
         }
         change.moves_modes = change.fade.iter().chain(&change.stretch).any(|value| *value != 0.0);
         change

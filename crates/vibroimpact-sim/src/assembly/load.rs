@@ -403,7 +403,7 @@ impl Loads {
 }
 
 /// `e^{ix} - 1` without cancellation.
-fn swept(angle: f64) -> Complex64 {
+pub(crate) fn swept(angle: f64) -> Complex64 {
     let half = (0.5 * angle).sin_cos();
     Complex64::new(-2.0 * half.0 * half.0, 2.0 * half.0 * half.1)
 }

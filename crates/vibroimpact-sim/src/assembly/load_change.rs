@@ -1,25 +1,70 @@
 //! Derivatives of the effect of loads with respect to a parameter.
 //!
-//! The motion under loads has a closed form ([`super::load`]), so its derivative at a fixed time is the slope through four
-//! neighbouring values of the parameter. If the time itself is shifted, the rate of that motion times the shift has to be added;
-//! the caller does so.
+//! The motion under loads has a closed form ([`super::load`]). Under a harmonic load it is `Re(G e^{i Omega t})`, whose derivative at a
+//! fixed time is `Re((dG + i t dOmega G) e^{i Omega t})`, with `dG` and `dOmega` the slopes through four neighbouring values of the
+//! parameter. A slope of the motion itself would be wrong at late times, when the neighbours are out of phase, and lost in rounding at
+//! early times, when the motion is small compared with `G`. The motion under piecewise linear loads is simple enough for its slope
+//! through the neighbours. If the time itself is shifted, the rate of the motion times the shift has to be added; the caller does so.
 
-use super::load::Loads;
+use super::load::{Loads, swept};
 use super::problem::Posed;
 use super::stencil::Stencil;
-use super::system::System;
+use super::system::{Link, Span, System};
+use num_complex::Complex64;
 use std::array;
 
 /// The loads at four neighbouring values of a parameter.
 #[derive(Clone)]
 pub(crate) struct LoadChange {
+    harmonics: Vec<HarmonicChange>,
+    /// With the piecewise linear loads alone.
     neighbours: [(System, Loads); 4],
     stencil: Stencil<4>,
 }
 
+/// Harmonic loads of one frequency.
+#[derive(Clone)]
+struct HarmonicChange {
+    omega_rad_s: f64,
+    omega_change: f64,
+    modes: Vec<Gain>,
+    contacts: Vec<Gain>,
+}
+
+/// The steady motion `G` of a mode or an overlap, and its change.
+#[derive(Clone, Copy)]
+struct Gain {
+    value: Complex64,
+    change: Complex64,
+}
+
+impl HarmonicChange {
+    /// The change of a motion, and the part of its rate by the change of the frequency.
+    fn at(&self, gain: &Gain, time_s: f64) -> [Complex64; 2] {
+        let turn = Complex64::cis(self.omega_rad_s * time_s);
+        let drift = Complex64::i() * self.omega_change * gain.value * turn;
+        [gain.change * turn + drift * time_s, drift]
+    }
+
+    /// The change of a motion and of its rate.
+    fn motion(&self, gain: &Gain, time_s: f64) -> (f64, f64) {
+        let [change, drift] = self.at(gain, time_s);
+        (change.re, (drift + Complex64::i() * self.omega_rad_s * change).re)
+    }
+
+    /// The change of the motion from a time on, `h` seconds later, and of its rate then.
+    fn moved(&self, gain: &Gain, time_s: f64, h: f64) -> (f64, f64) {
+        let [change, drift] = self.at(gain, time_s);
+        let swept = swept(self.omega_rad_s * h);
+        let drift = drift * (1.0 + swept);
+        let moved = change * swept + drift * h;
+        (moved.re, (drift + Complex64::i() * self.omega_rad_s * (change + moved)).re)
+    }
+}
+
 impl LoadChange {
-    /// `None` if there are no loads.
-    pub fn new(posed: [&Posed; 4], stencil: Stencil<4>) -> Option<LoadChange> {
+    /// With the change of each contact's weights. `None` if there are no loads.
+    pub fn new(system: &System, psi: &[Vec<Span>], posed: [&Posed; 4], stencil: Stencil<4>) -> Option<LoadChange> {
         if posed.iter().all(|posed| posed.loads.is_empty()) {
             return None;
         }
@@ -28,7 +73,46 @@ impl LoadChange {
             let loads = Loads::new(posed.loads, &system);
             (system, loads)
         });
-        Some(LoadChange { neighbours, stencil })
+        let mut change = LoadChange { harmonics: Vec::new(), neighbours, stencil };
+        let count = change.neighbours[0].1.harmonics.len();
+        // frequencies that coincide at a neighbour alone are left to the slope of the motion
+        if change.neighbours.iter().all(|(_, loads)| loads.harmonics.len() == count) {
+            change.harmonics = (0..count).map(|i| change.harmonic(system, psi, i)).collect();
+            change.neighbours.iter_mut().for_each(|(_, loads)| loads.harmonics.clear());
+        }
+        Some(change)
+    }
+
+    fn harmonic(&self, system: &System, psi: &[Vec<Span>], i: usize) -> HarmonicChange {
+        let near = self.neighbours.each_ref().map(|(_, loads)| &loads.harmonics[i]);
+        let gain = |values: [Complex64; 4]| {
+            let [re, im] = [values.map(|value| value.re), values.map(|value| value.im)];
+            let of = |find: &dyn Fn([f64; 4]) -> f64| Complex64::new(find(re), find(im));
+            Gain { value: of(&|values| self.stencil.value(values)), change: of(&|values| self.stencil.slope(values)) }
+        };
+        let mut modes = vec![Gain { value: Complex64::ZERO, change: Complex64::ZERO }; system.modes.len()];
+        for (body, places) in system.place.iter().enumerate() {
+            for (k, &place) in places.iter().enumerate() {
+                modes[place] = gain(array::from_fn(|n| near[n].modes[self.neighbours[n].0.place[body][k]]));
+            }
+        }
+        // from the modes, so that their errors and those of the relative motion cancel
+        let sum = |spans: &[Span], part: &dyn Fn(&Gain) -> Complex64| {
+            let parts = spans.iter().flat_map(|span| modes[span.modes.clone()].iter().zip(&span.psi));
+            parts.map(|(gain, psi)| part(gain) * *psi).sum::<Complex64>()
+        };
+        let contact = |(link, by): (&Link, &Vec<Span>)| Gain {
+            value: sum(&link.spans, &|gain| gain.value),
+            change: sum(&link.spans, &|gain| gain.change) + sum(by, &|gain| gain.value),
+        };
+        let contacts = system.links.iter().zip(psi).map(contact).collect();
+        let omega = near.map(|harmonic| harmonic.omega_rad_s);
+        HarmonicChange {
+            omega_rad_s: self.stencil.value(omega),
+            omega_change: self.stencil.slope(omega),
+            modes,
+            contacts,
+        }
     }
 
     fn slope(&self, of: impl Fn(&System, &Loads) -> f64) -> f64 {
@@ -60,19 +144,40 @@ impl LoadChange {
             loads.shift_modes(system, time_s, 1.0, &mut amplitude, &mut rate);
             (amplitude, rate)
         });
-        self.of_modes(system, &motions)
+        let (mut amplitude, mut rate) = self.of_modes(system, &motions);
+        for harmonic in &self.harmonics {
+            for ((amplitude, rate), gain) in amplitude.iter_mut().zip(&mut rate).zip(&harmonic.modes) {
+                let (change, faster) = harmonic.motion(gain, time_s);
+                *amplitude += change;
+                *rate += faster;
+            }
+        }
+        (amplitude, rate)
     }
 
     /// Change of [`Loads::overlap`].
     pub fn overlap(&self, contact: usize, time_s: f64) -> [f64; 2] {
-        let of = |part: fn((f64, f64)) -> f64| self.slope(|_, loads| part(loads.overlap(contact, time_s)));
-        [of(|pair| pair.0), of(|pair| pair.1)]
+        let by_lines = |loads: &Loads| loads.overlap(contact, time_s);
+        let (overlap, rate) =
+            self.with_harmonics(by_lines, |harmonic| harmonic.motion(&harmonic.contacts[contact], time_s));
+        [overlap, rate]
     }
 
     /// Change of [`Loads::moved`].
     pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
-        let of = |part: fn((f64, f64)) -> f64| self.slope(|_, loads| part(loads.moved(contact, time_s, h)));
-        (of(|pair| pair.0), of(|pair| pair.1))
+        let by_lines = |loads: &Loads| loads.moved(contact, time_s, h);
+        self.with_harmonics(by_lines, |harmonic| harmonic.moved(&harmonic.contacts[contact], time_s, h))
+    }
+
+    /// Change of a motion and of its rate: the slope of that under the other loads, and those of the harmonic ones.
+    fn with_harmonics(
+        &self,
+        of: impl Fn(&Loads) -> (f64, f64),
+        by: impl Fn(&HarmonicChange) -> (f64, f64),
+    ) -> (f64, f64) {
+        let found = self.neighbours.each_ref().map(|(_, loads)| of(loads));
+        let slopes = (self.stencil.slope(found.map(|pair| pair.0)), self.stencil.slope(found.map(|pair| pair.1)));
+        self.harmonics.iter().map(by).fold(slopes, |sum, more| (sum.0 + more.0, sum.1 + more.1))
     }
 
     /// Change of the piecewise linear force on a rigid mode at `time_s`, and of its slope.

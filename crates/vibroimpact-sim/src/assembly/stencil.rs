@@ -35,6 +35,13 @@ impl<const N: usize> Stencil<N> {
         (1..N).map(|i| self.weights[i] * (values[i] - values[0])).sum()
     }
 
+    /// The value of that polynomial at zero.
+    pub(crate) fn value(&self, values: [f64; N]) -> f64 {
+        let part = |i: usize, j: usize| self.offsets[j] / (self.offsets[j] - self.offsets[i]);
+        let weight = |i: usize| (0..N).filter(|j| *j != i).map(|j| part(i, j)).product::<f64>();
+        values[0] + (1..N).map(|i| weight(i) * (values[i] - values[0])).sum::<f64>()
+    }
+
     /// Error of the slope per independent error of each value (1/unit of the distances): the root of the sum of squares.
     pub fn magnification(&self) -> f64 {
         self.weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
