@@ -93,24 +93,6 @@ impl<'a> Change<'a> {
         change
     }
 
-    /// The same in a unit of time of which a second has so many, for an assembly without loads, and with the laws in this unit.
-    pub fn in_unit<'b>(&self, per_second: f64, laws: Option<[&'b dyn ContactLaw; 4]>) -> Change<'b> {
-        let per_unit = |values: &[f64]| values.iter().map(|value| value / per_second).collect();
-        Change {
-            amplitude: self.amplitude.clone(),
-            rate: per_unit(&self.rate),
-            gap_m: self.gap_m.clone(),
-            psi: self.psi.clone(),
-            fade: per_unit(&self.fade),
-            stretch: self.stretch.clone(),
-            laws: laws.map(|four| vec![four; self.gap_m.len()]),
-            loads: None,
-            stencil: self.stencil,
-            moves_modes: self.moves_modes,
-            critical: self.critical.clone(),
-        }
-    }
-
     /// A change of one amplitude or rate at the start alone.
     pub fn of_start(system: &System, place: usize, of_rate: bool) -> Change<'a> {
         let n = system.modes.len();

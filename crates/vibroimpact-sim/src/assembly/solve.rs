@@ -75,7 +75,7 @@ impl<'a> Solver<'a> {
 
     /// Tables for a run that shares no step, and therefore no error, with those in the other tables.
     pub(crate) fn between(&self) -> &Tables {
-        self.between.get_or_init(|| Tables::new(&self.system, Steps::BETWEEN))
+        self.between.get_or_init(|| Tables::new(&self.system, Steps::HALFWAY))
     }
 
     /// As [`run`].

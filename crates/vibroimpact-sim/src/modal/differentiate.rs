@@ -3,8 +3,7 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::solution::{Outcome, Solution};
-use super::solve::{COARSER, Impact, Run, SECOND, Solved, Solver};
-use super::time_unit::{Law, Unit};
+use super::solve::{ANSWER, BESIDE, Impact, Run, SOLUTIONS, Solved, Solver};
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
@@ -12,7 +11,6 @@ use crate::assembly::solve::Keep;
 use crate::assembly::system::System;
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use crate::concurrent::both;
-use crate::panel::dyadic::Steps;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
@@ -126,9 +124,6 @@ struct Changes {
     rate: Vec<f64>,
 }
 
-/// The coarser solution along which the derivatives are computed, too.
-const BESIDE: usize = 0;
-
 impl Solver {
     /// Solves one impact and differentiates it with respect to some parameters. The tangent of the motion is computed; motions are
     /// not differenced. Each parameter costs less than an impact.
@@ -186,7 +181,7 @@ impl Solver {
         other.as_ref().unwrap_or(self).along_all(&impact, parameters)
     }
 
-    /// The impact at its tolerance and in another unit of time at a coarser one, differentiated along both.
+    /// The impact at its tolerance and in other steps at a coarser one, differentiated along both.
     fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
         let Solved { solution, run: fine, coarser, .. } =
@@ -198,13 +193,12 @@ impl Solver {
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution, NoDerivative::Outcome));
         }
-        let coarser = coarser.unwrap_or_else(|| self.in_other_unit(impact, BESIDE, Keep::Motion).0);
-        let (unit, factor) = COARSER[BESIDE];
+        let coarser = coarser.unwrap_or_else(|| self.beside(impact));
         let around = Around::new(self, impact, parameters);
         let (coarse, found) = both(
             settings.concurrent,
-            || self.other(BESIDE).along(unit, impact, &around, &coarser),
-            || self.along(SECOND, impact, &around, &fine),
+            || self.along(BESIDE, impact, &around, &coarser),
+            || self.along(ANSWER, impact, &around, &fine),
         );
         let (changes, touches) = match found {
             Ok(found) => found,
@@ -217,7 +211,7 @@ impl Solver {
             let fine = fine?;
             let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
             let coarse = coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len());
-            let known = Known::new(factor * settings.tolerance, &parameters[i].offsets);
+            let known = Known::new(SOLUTIONS[BESIDE].1 * settings.tolerance, &parameters[i].offsets);
             Ok(fine.beside(coarse, &solution, known, by_impulse))
         };
         let derivatives = changes.into_iter().enumerate().map(of).collect();
@@ -225,23 +219,17 @@ impl Solver {
         Ok(Differentiated { solution, derivatives, nearest_graze, nearest_miss })
     }
 
-    /// Derivatives along a run that was computed in this solver's unit of time; impact, parameters and derivatives are in seconds.
-    fn along(&self, unit: Unit, impact: &Impact, around: &Around, run: &Run) -> Result<AllChanges, NoDerivative> {
+    /// Derivatives along one of the solutions.
+    fn along(&self, which: usize, impact: &Impact, around: &Around, run: &Run) -> Result<AllChanges, NoDerivative> {
         if run.outcome != Outcome::Rebound {
             return Err(NoDerivative::Outcome);
         }
-        let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
-        let assembly = posed::assembly(self.modes(), self.moved(), &striker, &start);
-        let posed = assembly.with_laws(vec![&law]);
+        let assembly = posed::assembly(self.modes(), self.moved(), impact.striker, impact.start);
+        let posed = assembly.with_laws(vec![impact.law]);
         let system = System::new(&posed);
-        let laws: Vec<_> = around.parameters.iter().map(|by| by.neighbours.map(|at| unit.law(at.law))).collect();
-        let in_unit = |((change, by), laws): ((&Change, &Parameter), _)| {
-            let laws: &[Law; 4] = laws;
-            change.in_unit(unit.0, by.changes_law.then(|| laws.each_ref().map(|law| law as &dyn ContactLaw)))
-        };
-        let changes: Vec<Change> = around.changes.iter().zip(around.parameters).zip(&laws).map(in_unit).collect();
         let stretches = &run.record.stretches;
-        let found = tangents(&posed, &system, stretches, (&changes, None), &mut Expansions::new(Steps::OF_SECOND))?;
+        let expansions = &mut Expansions::new(SOLUTIONS[which].0);
+        let found = tangents(&posed, &system, stretches, (&around.changes, None), expansions)?;
         let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
         let pick = |values: &[f64]| {
             let mut all = vec![0.0; self.modes().len()];
@@ -256,13 +244,12 @@ impl Solver {
             let by_mass = striker.as_ref().map_or(0.0, |side| around.weight[d] * end[side.modes.start]);
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
             let velocities = [velocity(end), velocity(&tangent.rate) + by_mass];
-            let motions = [&ended, &rate].map(|motion| motion.iter().map(|rate| rate * unit.0).collect::<Vec<f64>>());
-            let in_seconds = velocities.map(|speed| speed * unit.0);
-            let restitution = restitution_change(self.modes(), impact, &around.parameters[d], in_seconds, &motions);
+            let by = &around.parameters[d];
+            let restitution = restitution_change(self.modes(), impact, by, velocities, [&ended, &rate]);
             let numbers = [restitution, tangent.time_s, velocities[1]];
-            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate }.in_seconds(unit))
+            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
         };
-        Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches.map(|speed| speed * unit.0)))
+        Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches))
     }
 
     /// The modes that the contact excites, or that move it before the impact, at the value itself or at a neighbour.
@@ -278,7 +265,7 @@ impl Solver {
     }
 }
 
-/// How the numbers that define an impact change with each parameter, all in seconds.
+/// How the numbers that define an impact change with each parameter.
 struct Around<'a> {
     parameters: &'a [Parameter<'a>],
     changes: Vec<Change<'a>>,
@@ -297,7 +284,8 @@ impl<'a> Around<'a> {
             let posed: [Posed; 4] = array::from_fn(|i| near[i].with_laws(vec![by.neighbours[i].law]));
             let stencil = Stencil::new(by.offsets);
             let weight = |at: &Posing| posed::weight(at.striker, &at.structure.modes);
-            (Change::new(&system, posed.each_ref(), None, stencil), stencil.slope(by.neighbours.each_ref().map(weight)))
+            let laws = by.changes_law.then(|| vec![by.neighbours.each_ref().map(|at| at.law)]);
+            (Change::new(&system, posed.each_ref(), laws, stencil), stencil.slope(by.neighbours.each_ref().map(weight)))
         };
         let (changes, weight) = parameters.iter().map(of).unzip();
         Around { parameters, changes, weight }
@@ -310,7 +298,7 @@ fn restitution_change(
     impact: &Impact,
     by: &Parameter,
     [velocity, velocity_change]: [f64; 2],
-    [end, end_change]: &[Vec<f64>; 2],
+    [end, end_change]: [&[f64]; 2],
 ) -> f64 {
     let stencil = Stencil::new(by.offsets);
     let by_shape = stencil.slope(by.neighbours.each_ref().map(|at| rigid_motion(&at.structure.modes, end)));
@@ -323,23 +311,6 @@ fn restitution_change(
 }
 
 impl Changes {
-    /// Derivatives in seconds of those in a unit of time.
-    fn in_seconds(mut self, unit: Unit) -> Changes {
-        let [_, end_s, velocity_m_s] = &mut self.numbers;
-        *end_s = unit.seconds(*end_s);
-        *velocity_m_s *= unit.0;
-        for interval in &mut self.intervals {
-            interval.start_s = unit.seconds(interval.start_s);
-            interval.end_s = unit.seconds(interval.end_s);
-            interval.impulse_n_s *= unit.0;
-            interval.peak_force_n *= unit.0 * unit.0;
-            interval.approach_speed_m_s *= unit.0;
-            interval.separation_speed_m_s *= unit.0;
-        }
-        self.rate.iter_mut().for_each(|rate| *rate *= unit.0);
-        self
-    }
-
     /// Derivatives with their uncertainty from the coarser motion; `by_impulse` are restitution and final velocity per impulse.
     ///
     /// Two motions agree in some numbers by accident. As the error of a motion persists, a difference counts for all later outputs of

@@ -24,14 +24,14 @@
 //! speeds and laws, and threads share them. A mode that the contact does not excite, at its node, is left out unless it moves
 //! before the impact.
 //!
-//! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each is
-//! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). The restitutions
+//! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each has
+//! steps of its own, so that no two of the three solutions share one (`panel/dyadic.rs`). The restitutions
 //! are compared, and also those that would result if the impact ended in each flight between two contacts: two solutions may agree
 //! in one number by accident, but hardly in all. The uncertainty is three times the largest difference, and 0.0025 of the
 //! tolerance more for each contact. If that difference
 //! exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and more); if the numbers of contacts
 //! differ, it is close to a graze, where errors do not grow in proportion. A further solution, with 8 times the tolerance in the
-//! first unit, is then computed, and its difference counts twice.
+//! steps of the first, is then computed, and its difference counts twice.
 
 mod differentiate;
 mod history;
@@ -41,7 +41,6 @@ mod pulse;
 mod recording;
 mod solution;
 mod solve;
-mod time_unit;
 
 pub use differentiate::{
     Derivative, Derivatives, Differentiated, NearMiss, NoDerivative, Parameter, Posing, Stencil, SubImpactDerivatives,

@@ -5,7 +5,6 @@ use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
-use super::time_unit::Unit;
 use crate::StopReason;
 use crate::assembly::responses::Responses;
 use crate::assembly::solve::{Keep, follow};
@@ -16,20 +15,21 @@ use crate::concurrent::both;
 use crate::panel::dyadic::Steps;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
-use std::f64::consts::SQRT_2;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 /// Loosest tolerance of a solution. At looser tolerances the steps, and thus the costs, hardly differ any more, and their errors
 /// would not be noticed.
 pub(crate) const LOOSEST: f64 = 1e-4;
-/// Units of time of the coarser solutions that give the uncertainty, by their numbers in a second (`2^(1/2)` and `2^(1/4)`), and
-/// factors of their tolerances. No two of the three solutions share a step.
-pub(crate) const COARSER: [(Unit, f64); 2] = [(Unit(SQRT_2), 16.0), (Unit(1.189_207_115_002_721), 8.0)];
-/// The solver's own unit of time.
-pub(crate) const SECOND: Unit = Unit(1.0);
-/// Factor of the tolerance of a further solution in this unit, where these differ by more than the tolerance or in the number
-/// of their contacts.
+/// Steps of the solutions, the first of which is the answer, and factors of their tolerances. The coarser ones give the uncertainty.
+/// No two share a step.
+pub(crate) const SOLUTIONS: [(Steps, f64); 3] =
+    [(Steps::OF_SECOND, 1.0), (Steps::HALFWAY, 16.0), (Steps::QUARTER_WAY, 8.0)];
+/// The answer, and the coarser solution along which derivatives are computed as well.
+pub(crate) const ANSWER: usize = 0;
+pub(crate) const BESIDE: usize = 1;
+/// Factor of the tolerance of a further solution in the steps of the answer, where these differ by more than the tolerance or in the
+/// number of their contacts.
 const FURTHER: f64 = 8.0;
 /// Factor from the largest difference to the uncertainty; the difference from the further solution counts twice.
 const WIDENED: f64 = 3.0;
@@ -59,10 +59,8 @@ pub struct Solver {
     modes: Vec<Mode>,
     /// Indices of the modes that are solved for: those that the contact excites. The others move freely.
     moved: Vec<usize>,
-    /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
-    tables: [OnceLock<Arc<Tables>>; 2],
-    /// The same structure in the other units of time, once they were needed.
-    others: [OnceLock<Box<Solver>>; 2],
+    /// Tables for each of the solutions, with a striker and with a stop at rest, which adds no mode.
+    tables: [[OnceLock<Arc<Tables>>; 2]; SOLUTIONS.len()],
     /// The same structure with every mode that moves the contact at all, for motion before the impact.
     whole: OnceLock<Box<Solver>>,
 }
@@ -80,7 +78,6 @@ pub(crate) struct Impact<'a> {
 struct Lowered {
     assembly: Assembly<()>,
     system: System,
-    responses: Responses,
 }
 
 /// One run at one tolerance.
@@ -156,15 +153,10 @@ impl Solver {
     }
 
     fn turn_to_modes(&mut self, modes: Vec<Mode>, moved: Vec<usize>) {
-        for (other, (unit, _)) in self.others.iter_mut().zip(COARSER) {
-            if let Some(other) = other.get_mut() {
-                other.turn_to_modes(unit.modes(&modes), moved.clone());
-            }
-        }
         let same = moved.len() == self.moved.len()
             && moved.iter().zip(&self.moved).all(|(new, old)| modes[*new].of_body() == self.modes[*old].of_body());
         if same {
-            for kept in &mut self.tables {
+            for kept in self.tables.iter_mut().flatten() {
                 match kept.get_mut().map(Arc::get_mut) {
                     Some(Some(tables)) => tables.change_weights(),
                     // a recording has them, too
@@ -178,7 +170,7 @@ impl Solver {
     }
 
     fn of(modes: Vec<Mode>, moved: Vec<usize>) -> Solver {
-        Solver { moved, modes, tables: Default::default(), others: Default::default(), whole: OnceLock::new() }
+        Solver { moved, modes, tables: Default::default(), whole: OnceLock::new() }
     }
 
     /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
@@ -218,7 +210,7 @@ impl Solver {
             striker: *striker,
             start,
             record: run.record,
-            tables: Arc::clone(solver.tables(&system)),
+            tables: Arc::clone(solver.tables(&system, ANSWER)),
             work_and_damping_j,
             system,
         })
@@ -265,28 +257,28 @@ impl Solver {
         )?;
 
         let impact = Impact { striker, law, start, settings };
-        let mut lowered = self.lower(&impact);
-        let tolerance = settings.tolerance.min(LOOSEST);
+        let (lowered, mut responses) = (self.lower(&impact), Responses::default());
         let Settings { estimate_uncertainty, concurrent, .. } = *settings;
+        let mut solve = |factor: f64, keep| self.run(&impact, &lowered, (ANSWER, &mut responses), factor, keep);
         let (mut beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
             let solve_and_book = || {
-                let run = self.run_lowered(&impact, &mut lowered, tolerance, keep);
+                let run = solve(1.0, keep);
                 let system = &lowered.system;
-                let book = || work_and_damping_j(system, &run.record, self.tables(system));
+                let book = || work_and_damping_j(system, &run.record, self.tables(system, ANSWER));
                 let booked = (keep == Keep::Motion).then(book);
                 (run, booked)
             };
-            let (coarser, (run, booked)) = both(true, || self.coarser(&impact, keep), solve_and_book);
+            let (coarser, (run, booked)) = both(true, || self.coarser(&impact, &lowered, keep), solve_and_book);
             (Some(coarser), run, booked)
         } else {
-            (None, self.run_lowered(&impact, &mut lowered, tolerance, keep), None)
+            (None, solve(1.0, keep), None)
         };
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
-        let known = if estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
+        let known = if estimate_uncertainty { self.restitutions(&run, &impact) } else { None };
         let restitution_uncertainty = known.and_then(|known| {
-            let coarser = beside.get_or_insert_with(|| self.coarser(&impact, keep));
-            self.uncertainty(&known, coarser, &impact, &mut lowered, &mut counts)
+            let coarser = beside.get_or_insert_with(|| self.coarser(&impact, &lowered, keep));
+            self.uncertainty(&known, coarser, &impact, &mut |factor| solve(factor, Keep::Result), &mut counts)
         });
         let solution = Solution {
             outcome: run.outcome,
@@ -303,13 +295,14 @@ impl Solver {
         Ok(Solved { solution, run, coarser, system: lowered.system, work_and_damping_j })
     }
 
-    /// Coarser solutions of the same impact in other units of time, up to the first without a restitution. The motion of the first
-    /// is kept for derivatives.
-    fn coarser(&self, impact: &Impact, keep: Keep) -> Vec<(Run, Option<Restitutions>)> {
-        let mut found = Vec::with_capacity(COARSER.len());
-        for which in 0..COARSER.len() {
-            let keep = if which == 0 && keep == Keep::NearestMiss { Keep::Motion } else { Keep::Result };
-            let (run, restitutions) = self.in_other_unit(impact, which, keep);
+    /// Coarser solutions of the same impact in other steps, up to the first without a restitution. The motion of the first is kept
+    /// for derivatives.
+    fn coarser(&self, impact: &Impact, lowered: &Lowered, keep: Keep) -> Vec<(Run, Option<Restitutions>)> {
+        let mut found = Vec::with_capacity(SOLUTIONS.len());
+        for (which, (_, factor)) in SOLUTIONS.into_iter().enumerate().skip(BESIDE) {
+            let keep = if which == BESIDE && keep == Keep::NearestMiss { Keep::Motion } else { Keep::Result };
+            let run = self.run(impact, lowered, (which, &mut Responses::default()), factor, keep);
+            let restitutions = self.restitutions(&run, impact);
             let ends = restitutions.is_none();
             found.push((run, restitutions));
             if ends {
@@ -319,32 +312,21 @@ impl Solver {
         found
     }
 
-    /// One of these solutions, in its unit of time.
-    pub(crate) fn in_other_unit(&self, impact: &Impact, which: usize, keep: Keep) -> (Run, Option<Restitutions>) {
-        let (unit, factor) = COARSER[which];
-        let solver = self.other(which);
-        let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
-        let tolerance = factor * impact.settings.tolerance.min(LOOSEST);
-        let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
-        let run = solver.run_lowered(&impact, &mut solver.lower(&impact), tolerance, keep);
-        let restitutions = solver.restitutions(&run, &impact, unit);
-        (run, restitutions)
+    /// The coarser solution along which derivatives are computed.
+    pub(crate) fn beside(&self, impact: &Impact) -> Run {
+        let responses = &mut Responses::default();
+        self.run(impact, &self.lower(impact), (BESIDE, responses), SOLUTIONS[BESIDE].1, Keep::Motion)
     }
 
-    /// The same structure in one of the other units of time.
-    pub(crate) fn other(&self, which: usize) -> &Solver {
-        let of = |unit: Unit| Solver::of(unit.modes(&self.modes), self.moved.clone());
-        self.others[which].get_or_init(|| Box::new(of(COARSER[which].0)))
-    }
-
-    /// Estimated error of the restitution, from coarser solutions of the same impact: `None` if one of them stopped at a limit, and 1
+    /// Estimated error of the restitution, from coarser solutions of the same impact, and from a further one that `solve` finds with so
+    /// many times the tolerance: `None` if one of them stopped at a limit, and 1
     /// if one ended without a restitution.
     fn uncertainty(
         &self,
         known: &Restitutions,
         coarser: &[(Run, Option<Restitutions>)],
         impact: &Impact,
-        lowered: &mut Lowered,
+        solve: &mut impl FnMut(f64) -> Run,
         counts: &mut Counts,
     ) -> Option<f64> {
         let without = |run: &Run| if run.outcome.stopped_by().is_some() { None } else { Some(1.0) };
@@ -357,19 +339,19 @@ impl Solver {
             same_contacts &= known.flights.len() == coarser.flights.len();
         }
         if spread > tolerance || !same_contacts {
-            let run = self.run_lowered(impact, lowered, FURTHER * tolerance, Keep::Result);
+            let run = solve(FURTHER);
             *counts += run.counts;
-            let Some(further) = self.restitutions(&run, impact, SECOND) else { return without(&run) };
+            let Some(further) = self.restitutions(&run, impact) else { return without(&run) };
             spread = spread.max(2.0 * known.difference(&further));
         }
         let contacts = known.flights.len() as f64;
         Some((WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX))
     }
 
-    /// The tables for a system of the structure, with or without a striker.
-    fn tables(&self, system: &System) -> &Arc<Tables> {
-        self.tables[usize::from(system.bodies.len() == 1)]
-            .get_or_init(|| Arc::new(Tables::new(system, Steps::OF_SECOND)))
+    /// The tables of a solution for a system of the structure, with or without a striker.
+    fn tables(&self, system: &System, which: usize) -> &Arc<Tables> {
+        self.tables[which][usize::from(system.bodies.len() == 1)]
+            .get_or_init(|| Arc::new(Tables::new(system, SOLUTIONS[which].0)))
     }
 
     /// The solver for this motion before the impact: by it, modes can move the contact that the contact does not excite.
@@ -397,16 +379,24 @@ impl Solver {
     fn lower(&self, impact: &Impact) -> Lowered {
         let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
         let system = System::new(&assembly.with_laws(Vec::new()));
-        Lowered { assembly, system, responses: Responses::default() }
+        Lowered { assembly, system }
     }
 
-    fn run_lowered(&self, impact: &Impact, lowered: &mut Lowered, tolerance: f64, keep: Keep) -> Run {
+    /// One run in the steps of one of the solutions, with so many times the tolerance.
+    fn run(
+        &self,
+        impact: &Impact,
+        lowered: &Lowered,
+        (which, responses): (usize, &mut Responses),
+        factor: f64,
+        keep: Keep,
+    ) -> Run {
         let Impact { law, start, settings, .. } = *impact;
-        let Lowered { assembly, system, responses } = lowered;
+        let Lowered { assembly, system } = lowered;
         let posed = assembly.with_laws(vec![law]);
         let wanted = assembly::Settings {
             end_s: f64::INFINITY,
-            tolerance: tolerance.min(0.1),
+            tolerance: (factor * settings.tolerance.min(LOOSEST)).min(0.1),
             max_steps: settings.max_steps,
             max_intervals: settings.max_sub_impacts as u64,
             stop_at_rest: true,
@@ -415,7 +405,7 @@ impl Solver {
             statistics_from_s: 0.0,
         };
         let mut watch = Watch(Vec::new());
-        let tables = self.tables(system);
+        let tables = self.tables(system, which);
         let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep);
         let Watch(intervals) = watch;
         let closed = intervals.last().is_some_and(|last| last.end_s.is_none());
@@ -460,16 +450,15 @@ impl Solver {
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
     }
 
-    /// The restitution of a run in this unit of time, with those that an end after each contact would have had.
-    fn restitutions(&self, run: &Run, impact: &Impact, unit: Unit) -> Option<Restitutions> {
+    /// The restitution of a run, with those that an end after each contact would have had.
+    fn restitutions(&self, run: &Run, impact: &Impact) -> Option<Restitutions> {
         let Impact { striker, start, .. } = *impact;
         let last = self.restitution(run, striker, start)?;
         let (mobility, approach) = (mobility(&self.modes, striker), approach(&self.modes, striker, start));
         let mut impulse_n_s = 0.0;
         let after = |contact: &SubImpact| {
             impulse_n_s += contact.impulse_n_s;
-            let contact_s = [contact.start_s, contact.end_s].map(|time| unit.seconds(time));
-            Flight { contact_s, restitution: mobility * impulse_n_s / approach - 1.0 }
+            Flight { contact_s: [contact.start_s, contact.end_s], restitution: mobility * impulse_n_s / approach - 1.0 }
         };
         Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last })
     }

@@ -23,7 +23,9 @@ impl Steps {
     /// Parts of a second.
     pub const OF_SECOND: Steps = Steps { unit_s: 1.0 };
     /// Parts of `1/sqrt(2)` s, each halfway between two parts of a second on a logarithmic scale.
-    pub const BETWEEN: Steps = Steps { unit_s: FRAC_1_SQRT_2 };
+    pub const HALFWAY: Steps = Steps { unit_s: FRAC_1_SQRT_2 };
+    /// Parts of `2^(-1/4)` s, a quarter of the way.
+    pub const QUARTER_WAY: Steps = Steps { unit_s: 0.840_896_415_253_714_5 };
 
     /// Step length (s) for a step exponent.
     #[inline]
@@ -149,7 +151,7 @@ mod tests {
 
     #[test]
     fn levels_are_the_powers_of_two_that_fit() {
-        for steps in [Steps::OF_SECOND, Steps::BETWEEN] {
+        for steps in [Steps::OF_SECOND, Steps::HALFWAY, Steps::QUARTER_WAY] {
             let before = (-100..100).map(|j| steps.step_s(j).next_down());
             for t in [1.0, 0.7, 0.5, 1e-9, 3.3e-20, 1e20].into_iter().chain(before) {
                 let h = steps.step_s(steps.level_within(t));
