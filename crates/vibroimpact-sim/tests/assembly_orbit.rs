@@ -1,6 +1,6 @@
 //! Periodic motions compared with closed forms.
 
-use contact_models::{KelvinVoigt, Law, LinearSpring};
+use contact_models::{Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton};
 use std::cell::Cell;
 use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
@@ -317,4 +317,34 @@ fn a_pair_of_multipliers_leaves_the_unit_circle_at_a_neimark_sacker_point() {
     assert!((found[0].parameter - between).abs() < 0.1 * (high - low), "{} {between}", found[0].parameter);
     assert!(found[0].uncertainty < 1e-6);
     assert_ne!(branch.points[before].orbit.stable, branch.points[after].orbit.stable);
+}
+
+/// The map over a period begins with contacts that have forgotten the one before; where a contact has not, its fixed point is no motion.
+#[test]
+fn a_motion_that_depends_on_what_a_contact_keeps_from_earlier_periods_is_no_orbit() {
+    let law = |law: Law, constant_n: f64, gap_m: f64| {
+        let mut assembly = driven(0.05, gap_m, 1.0, 9.0);
+        assembly.contacts[0].law = law;
+        let force = Force::Constant { force_n: constant_n };
+        assembly.loads.push(Load { body: 0, shape: vec![1.0], force });
+        assembly
+    };
+    let thornton = |p_y: f64| Law::from(Thornton::new(1e5, 0.01, p_y).unwrap());
+    let hysteretic =
+        Hysteretic { stiffness_n_m1_5: 200.0, theta_m: 1.6, beta: 1.4, k_bar: 3.0, epsilon_m: 0.0 }.validated();
+    let hysteretic = Law::from(hysteretic.unwrap());
+    // one dents the stop ever deeper; the other never leaves it
+    for assembly in [law(thornton(3e2), 0.0, 1e-3), law(hysteretic, 20.0, -0.05)] {
+        let found = find_orbit(&assembly, &OrbitSettings::default()).unwrap();
+        assert_eq!(found, OrbitOutcome::Remembers { contact: 0 }, "{:?}", assembly.contacts[0].law);
+        let build = |_: f64| Ok::<_, InvalidInput>(assembly.clone());
+        let branch = follow_branch(build, &BranchSettings::over(0.0, 1.0), &|| false).unwrap();
+        assert!(branch.points.is_empty() && branch.remembers == Some(0), "{branch:?}");
+    }
+    // without yield nothing is kept, and a hysteretic contact that opens forgets
+    let opens = law(hysteretic, 0.0, 1e-3);
+    for assembly in [law(thornton(1e5), 0.0, 1e-3), law(thornton(1e5), 20.0, -0.05), opens] {
+        let found = find_orbit(&assembly, &OrbitSettings::default()).unwrap();
+        assert!(matches!(found, OrbitOutcome::Found(_)), "{:?} {found}", assembly.contacts[0].law);
+    }
 }

@@ -142,6 +142,9 @@ pub struct Branch {
     pub complete: bool,
     /// Whether it was interrupted.
     pub interrupted: bool,
+    /// The contact that keeps something from earlier periods, if there is no first orbit for this reason
+    /// ([`OrbitOutcome::Remembers`]).
+    pub remembers: Option<usize>,
 }
 
 /// Follows the branch of periodic motions of `build(parameter)`. `stop` is called from time to time, and ends the branch
@@ -155,8 +158,10 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     stop: &dyn Fn() -> bool,
 ) -> Result<Branch, E> {
     settings.check()?;
-    let OrbitOutcome::Found(first) = find_orbit_until(&build(settings.from)?, &settings.orbit, stop)? else {
-        return Ok(Branch { interrupted: stop(), ..Branch::default() });
+    let first = match find_orbit_until(&build(settings.from)?, &settings.orbit, stop)? {
+        OrbitOutcome::Found(first) => first,
+        OrbitOutcome::Remembers { contact } => return Ok(Branch { remembers: Some(contact), ..Branch::default() }),
+        _ => return Ok(Branch { interrupted: stop(), ..Branch::default() }),
     };
     let follower = Follower::new(build, settings, &first, stop);
     let start = BranchPoint { parameter: settings.from, orbit: *first };

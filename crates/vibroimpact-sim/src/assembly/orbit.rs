@@ -7,11 +7,12 @@
 //! differences then replace it, and Newton's method may fail to converge.
 //!
 //! The states are compared at a moment at which every contact is open, if there is one, because the internal variables of a
-//! closed contact are not part of `x`.
+//! closed contact are not part of `x`. Neither is the indentation of an open one. If the motion depends on either, a fixed point of
+//! the map is not a periodic motion ([`OrbitOutcome::Remembers`]).
 
 use super::period::CommonPeriod;
 use super::problem::{Assembly, Force, Settings};
-use super::solution::{ContactSample, Interval, Motion, Observer, Outcome, Reason};
+use super::solution::{ContactSample, Interval, Motion, Observer, Outcome, Reason, Run};
 use super::solve::{Solver, run};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
@@ -136,6 +137,13 @@ pub enum OrbitOutcome {
         /// The returns of the motion from the start, if it was followed in search of them.
         recurrence: Option<Recurrence>,
     },
+    /// A motion was found that would repeat itself if this contact forgot all earlier motion once in each period. It does not
+    /// ([`ContactEnd::remembers`](super::ContactEnd::remembers)): its surfaces keep an indentation, or it is closed all the time, or
+    /// whenever another one is open, and its law has internal variables. The real motion differs.
+    Remembers {
+        /// Index of the contact in [`Assembly::contacts`], from 0.
+        contact: usize,
+    },
     /// A run of a period stopped before its end.
     Stopped(Outcome),
     /// The observer interrupted the search at this distance.
@@ -153,6 +161,9 @@ impl fmt::Display for OrbitOutcome {
             OrbitOutcome::Found(orbit) => write!(f, "found: a period of {} s", orbit.period_s),
             OrbitOutcome::NotFound { closure, .. } => {
                 write!(f, "not found: the motion repeats itself to {closure:e} at best")
+            }
+            OrbitOutcome::Remembers { contact } => {
+                write!(f, "not found: the motion depends on what contact {contact} keeps from earlier periods")
             }
             OrbitOutcome::Stopped(outcome) => write!(f, "a period did not end: {outcome}"),
             OrbitOutcome::Interrupted { closure, .. } => write!(f, "interrupted at a closure of {closure:e}"),
@@ -291,9 +302,13 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         DVector::from_vec(values.collect())
     }
 
-    pub fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
+    fn run(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         let settings = Settings { end_s, ..self.settings };
-        let found = run(&self.posed(state), &settings, &mut Stoppable { stop: self.stop, observer })?;
+        run(&self.posed(state), &settings, &mut Stoppable { stop: self.stop, observer })
+    }
+
+    pub fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
+        let found = self.run(state, end_s, observer)?;
         Ok(match found.outcome {
             Outcome::End => Ok(Self::state_of(&found.amplitude, &found.rate)),
             other => Err(other),
@@ -392,8 +407,12 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         iterations: u32,
     ) -> Result<OrbitOutcome, InvalidInput> {
         let mut survey = Survey::new(self);
-        if let Err(outcome) = self.follow(&state, self.settings.end_s, &mut survey)? {
-            return Ok(OrbitOutcome::Stopped(outcome));
+        let period = self.run(&state, self.settings.end_s, &mut survey)?;
+        if period.outcome != Outcome::End {
+            return Ok(OrbitOutcome::Stopped(period.outcome));
+        }
+        if let Some(contact) = period.contacts.iter().position(|contact| contact.remembers) {
+            return Ok(OrbitOutcome::Remembers { contact });
         }
         let eigenvalues = jacobian.complex_eigenvalues();
         let mut floquet_multipliers: Vec<[f64; 2]> = eigenvalues.iter().map(|value| [value.re, value.im]).collect();

@@ -90,17 +90,18 @@ fn from_returns<L: ContactLaw + Clone>(
         Ok(section) => section,
         Err(outcome) => return Ok(stopped(outcome, closure)),
     };
-    let mut unstable = None;
+    let (mut unstable, mut remembers) = (None, None);
     for k in section.nearest_returns(settings.forcing_periods as usize) {
         match from_start(assembly, settings, stop, section.states[k].clone(), 0)? {
             OrbitOutcome::NotFound { closure: found, .. } => closure = closure.min(found),
             OrbitOutcome::Stopped(outcome) if outcome != Outcome::Stopped(Reason::Interrupted) => {}
-            OrbitOutcome::Found(orbit) if !orbit.stable => unstable = unstable.or(Some(orbit)),
+            OrbitOutcome::Found(orbit) if !orbit.stable => unstable = unstable.or(Some(OrbitOutcome::Found(orbit))),
+            OrbitOutcome::Remembers { contact } => remembers = remembers.or(Some(OrbitOutcome::Remembers { contact })),
             found => return Ok(found),
         }
     }
-    if let Some(orbit) = unstable {
-        return Ok(OrbitOutcome::Found(orbit));
+    if let Some(found) = unstable.or(remembers) {
+        return Ok(found);
     }
     let map = PeriodMap::new(assembly.clone(), &of_one, stop)?;
     Ok(match section.separation(&map)? {

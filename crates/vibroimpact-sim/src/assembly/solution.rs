@@ -120,6 +120,10 @@ pub struct ContactEnd {
     pub force_n: f64,
     /// Energy that the contact stores (J).
     pub stored_j: f64,
+    /// Whether its future depends on the earlier motion, and not only on the present one: open surfaces have a permanent
+    /// indentation, or the internal variables of a closed contact differ from those with which surfaces of this compression and rate
+    /// begin.
+    pub remembers: bool,
 }
 
 /// The energy balance. The energy of the bodies and the stored energy at the start, plus the work of the loads, equal the energy

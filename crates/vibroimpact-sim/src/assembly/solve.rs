@@ -7,10 +7,12 @@ use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{Comparison, second_run};
 use super::responses::Responses;
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
+use super::state::Phase;
 use super::system::System;
 use super::tables::Tables;
+use super::transition::branch_at_start;
 use crate::panel::dyadic::Steps;
-use contact_models::ContactLaw;
+use contact_models::{ContactLaw, Memory};
 use invalid_input::InvalidInput;
 use std::fmt;
 use std::sync::OnceLock;
@@ -186,6 +188,10 @@ fn contact_end(march: &March, c: usize) -> ContactEnd {
         velocity_m_s: [0.0; 2],
         force_n: 0.0,
         stored_j: 0.0,
+        remembers: match &state.phase {
+            Phase::Open { memory, .. } => *memory != Memory::default(),
+            Phase::Closed(touch) => branch_at_start(law, state.overlap, state.rate) != Some(touch.branch),
+        },
     };
     for (i, side) in march.system.links[c].sides.iter().enumerate() {
         if let Some(side) = side {

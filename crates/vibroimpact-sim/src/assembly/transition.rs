@@ -10,7 +10,7 @@ use super::terminal::{series_of, value};
 use crate::panel::dyadic::{J_MAX, J_MIN};
 use crate::panel::ends::EXPONENT;
 use crate::panel::peak::Peak;
-use contact_models::{After, Boundary, Branch, Memory, boundaries};
+use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 
 /// Bound on the relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch, and its derivatives.
 pub(super) const SINGULAR: f64 = 2.5e-4;
@@ -25,6 +25,19 @@ const ALIKE: f64 = 1e-3;
 
 /// Largest number of boundaries that a contact passes as it begins.
 const MOST_PASSED: usize = 16;
+
+/// The branch on which fresh surfaces are that overlap at the start; `None` if they separate at once.
+pub(super) fn branch_at_start(law: &dyn ContactLaw, overlap: f64, rate: f64) -> Option<Branch> {
+    let mut branch = law.touch(&Memory::default(), rate.max(0.0));
+    for _ in 0..MOST_PASSED {
+        let Some(passed) = boundaries(law, &branch).position(|end| end.margin(overlap, rate) < 0.0) else { break };
+        match law.cross(&branch, passed, overlap, rate) {
+            After::Continue(next) => branch = next,
+            After::Release(_) => return None,
+        }
+    }
+    Some(branch)
+}
 
 impl<'a> March<'a> {
     /// Contacts that touch at the start close at once, unless nothing can move them or press them together.

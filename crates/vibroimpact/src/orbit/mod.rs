@@ -42,7 +42,14 @@ impl AssemblyScene {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
         let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| in_scene(&posed, fault))?;
-        let none = Found { outcome: INTERRUPTED, reason: None, orbit: None, nearest_closure: None, recurrence: None };
+        let none = Found {
+            outcome: INTERRUPTED,
+            reason: None,
+            orbit: None,
+            nearest_closure: None,
+            recurrence: None,
+            remembering_contact: None,
+        };
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
                 Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), ..none }
@@ -50,6 +57,10 @@ impl AssemblyScene {
             OrbitOutcome::NotFound { closure, recurrence } => {
                 let recurrence = recurrence.as_ref().map(Recurrence::new);
                 Found { outcome: "not found", nearest_closure: Some(closure), recurrence, ..none }
+            }
+            OrbitOutcome::Remembers { contact } => {
+                let remembering_contact = Some(posed.contacts[contact].clone());
+                Found { outcome: "not found", remembering_contact, ..none }
             }
             OrbitOutcome::Interrupted { closure, .. } => Found { nearest_closure: Some(closure), ..none },
             OrbitOutcome::Stopped(Outcome::Stopped(Reason::Interrupted)) => none,
@@ -178,6 +189,7 @@ impl BranchPart {
         BranchPart {
             complete: branch.complete,
             interrupted: branch.interrupted,
+            remembering_contact: branch.remembers.map(|contact| posed.contacts[contact].clone()),
             orbits: orbits
                 .map(|point| BranchOrbit { value: point.parameter, orbit: OrbitSummary::new(posed, &point.orbit) })
                 .collect(),

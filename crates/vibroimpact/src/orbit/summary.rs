@@ -63,6 +63,9 @@ pub struct Found {
     /// How nearly the motion from the start repeats itself, if it was followed in search of a periodic motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recurrence: Option<Recurrence>,
+    /// The contact that keeps something from earlier periods, if a motion was found that would repeat itself only without that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remembering_contact: Option<String>,
 }
 
 /// How nearly the motion from the start repeats itself.
@@ -121,6 +124,9 @@ pub struct BranchPart {
     pub complete: bool,
     /// Whether it was interrupted.
     pub interrupted: bool,
+    /// The contact that keeps something from earlier periods, if there is no first orbit for this reason.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remembering_contact: Option<String>,
     /// The orbits in order.
     pub orbits: Vec<BranchOrbit>,
     /// Special points between them.

@@ -12,6 +12,9 @@ const CHAOTIC: f64 = 1.02;
 
 /// A periodic motion, or the reason why there is none.
 pub fn text(found: &Found) -> String {
+    if let Some(contact) = &found.remembering_contact {
+        return format!("  outcome               not found\n  {}\n", remembering(contact));
+    }
     match (&found.orbit, found.nearest_closure) {
         (Some(orbit), _) => orbit_text(orbit),
         (None, Some(closure)) if found.outcome == INTERRUPTED => format!(
@@ -31,6 +34,14 @@ pub fn text(found: &Found) -> String {
             format!("  outcome               stopped: a run over one period did not reach its end{reason}.\n")
         }
     }
+}
+
+/// Why the fixed point of the map is not a periodic motion.
+fn remembering(contact: &str) -> String {
+    format!(
+        "The contact \"{contact}\" keeps an indentation, or it is never open while its law has internal variables. The motion depends on \
+         them,\n  and they are not part of the state whose return is sought. A long run (simulate) follows them."
+    )
 }
 
 const ADVICE: &str = "  A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n";
@@ -99,10 +110,14 @@ impl BranchSummary {
     /// The branches in a few lines: their extent, their stability, and their special points.
     pub fn text(&self) -> String {
         if self.main.orbits.is_empty() {
-            let why = if self.main.interrupted {
-                "interrupted before a periodic motion was found at the first value"
-            } else {
-                "no periodic motion was found at the first value; a longer --transient may lead to one"
+            let why = match &self.main.remembering_contact {
+                Some(contact) => format!("no periodic motion was found at the first value\n  {}", remembering(contact)),
+                None if self.main.interrupted => {
+                    "interrupted before a periodic motion was found at the first value".to_owned()
+                }
+                None => {
+                    "no periodic motion was found at the first value; a longer --transient may lead to one".to_owned()
+                }
             };
             return format!("  {why}\n");
         }
