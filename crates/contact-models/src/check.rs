@@ -239,7 +239,7 @@ impl Place<'_> {
         let depth = (xi - end).min((xi - branch.anchor_m).abs());
         let (by_xi, by_rate) = (STEP * depth, STEP * rate.abs());
         let room = |end: &Boundary| {
-            end.margin(xi, rate) > 2.0 * (end.per_compression.abs() * by_xi + end.per_rate.abs() * by_rate)
+            end.margin(xi, rate) > 3.0 * (end.per_compression.abs() * by_xi + end.per_rate.abs() * by_rate)
         };
         // Nearer to its end the force is too small for differences.
         let within = depth > 1e-3 * xi.abs() && by_rate > 0.0 && ends.iter().all(room);
@@ -247,13 +247,17 @@ impl Place<'_> {
             return Ok(());
         }
         let at = |xi: f64, rate: f64| law.force(branch, xi, rate).force_n;
+        // of fourth order, which follows powers of the compression up to some thousand
+        let slope = |near: f64, far: f64, step: f64| (8.0 * near - far) / (12.0 * step);
+        let change_xi = |by: f64| at(xi + by, rate) - at(xi - by, rate);
+        let change_rate = |by: f64| at(xi, rate + by) - at(xi, rate - by);
         let pairs = [
-            (force.per_compression_n_m, at(xi + by_xi, rate) - at(xi - by_xi, rate), by_xi),
-            (force.per_rate_n_s_m, at(xi, rate + by_rate) - at(xi, rate - by_rate), by_rate),
+            (force.per_compression_n_m, slope(change_xi(by_xi), change_xi(2.0 * by_xi), by_xi), by_xi),
+            (force.per_rate_n_s_m, slope(change_rate(by_rate), change_rate(2.0 * by_rate), by_rate), by_rate),
         ];
-        for (stated, change, step) in pairs {
-            let found = change / (2.0 * step);
-            let allowed = DIFFERENCE * (stated.abs() + found.abs()) + 1e-14 * force.force_n.abs() / step;
+        for (stated, found, step) in pairs {
+            let allowed =
+                DIFFERENCE * (stated.abs() + found.abs()) + (1e-14 * force.force_n.abs() + f64::MIN_POSITIVE) / step;
             self.require((stated - found).abs() <= allowed, || Promise::Derivative { stated, found })?;
         }
         Ok(())

@@ -77,20 +77,25 @@ impl Hysteretic {
         xi + self.epsilon_m.max(SMALLEST)
     }
 
-    /// `theta` and its derivative with respect to `xi`. Before the anchor, where the branch is not valid, it is continued by
-    /// its tangent.
-    fn theta(&self, branch: &Branch, xi: f64) -> (f64, f64) {
-        let goal = self.goal(branch.stage);
+    /// The limit of `1 + theta` on this branch: exactly zero for unloading where `beta` is `1 + theta_m`.
+    fn floor(&self, stage: Stage) -> f64 {
+        1.0 + self.theta_m + if stage == Stage::Unloading { -self.beta } else { self.beta }
+    }
+
+    /// The distance of `theta` from its limit, and its derivative with respect to `xi`. The limit may be the one without a force, so
+    /// that their sum would lose the digits of a small force. Before the anchor, where the branch is not valid, it is continued by its
+    /// tangent.
+    fn distance(&self, branch: &Branch, xi: f64) -> (f64, f64) {
         let [theta_a] = branch.internal.into();
-        let distance = theta_a - goal;
+        let distance = theta_a - self.goal(branch.stage);
         let (anchor, here) = (self.shifted(branch.anchor_m), self.shifted(xi));
         let (sign, ratio) = if branch.stage == Stage::Unloading { (1.0, here / anchor) } else { (-1.0, anchor / here) };
         if ratio <= 1.0 {
             let share = ratio.powf(self.k_bar);
-            (goal + distance * share, sign * self.k_bar * distance * share / here)
+            (distance * share, sign * self.k_bar * distance * share / here)
         } else {
             let slope = sign * self.k_bar * distance / anchor;
-            (theta_a + slope * (here - anchor), slope)
+            (distance + slope * (here - anchor), slope)
         }
     }
 
@@ -114,11 +119,12 @@ impl ContactLaw for Hysteretic {
         if xi <= 0.0 {
             return Force::ZERO;
         }
-        let (theta, slope) = self.theta(branch, xi);
+        let (distance, slope) = self.distance(branch, xi);
+        let factor = self.floor(branch.stage) + distance;
         let root = self.stiffness_n_m1_5 * xi.sqrt();
         Force {
-            force_n: root * xi * (1.0 + theta),
-            per_compression_n_m: root * (1.5 * (1.0 + theta) + xi * slope),
+            force_n: root * xi * factor,
+            per_compression_n_m: root * (1.5 * factor + xi * slope),
             per_rate_n_s_m: 0.0,
         }
     }
@@ -129,8 +135,8 @@ impl ContactLaw for Hysteretic {
             return 0.0;
         }
         // Unloading from here: 1 + theta = floor + excess ((s + eps)/(xi + eps))^K at s < xi.
-        let floor = 1.0 + self.goal(Stage::Unloading);
-        let excess = 1.0 + self.theta(branch, xi).0 - floor;
+        let floor = self.floor(Stage::Unloading);
+        let excess = self.floor(branch.stage) - floor + self.distance(branch, xi).0;
         let eps = self.shifted(0.0);
         let moment = power_moment((eps / xi).min(LARGEST), self.k_bar);
         self.stiffness_n_m1_5 * xi * xi * xi.sqrt() * (0.4 * floor + excess * moment)
@@ -151,6 +157,7 @@ impl ContactLaw for Hysteretic {
         }
         let xi = bounded(compression_m).max(0.0);
         let stage = if branch.stage == Stage::Unloading { Stage::Loading } else { Stage::Unloading };
-        After::Continue(Branch { stage, anchor_m: xi, internal: [self.theta(branch, xi).0].into() })
+        let theta = self.goal(branch.stage) + self.distance(branch, xi).0;
+        After::Continue(Branch { stage, anchor_m: xi, internal: [theta].into() })
     }
 }

@@ -3,7 +3,7 @@
 use crate::common;
 
 use crate::common::{Motion, laws, motions, walk};
-use contact_models::{ContactLaw, Force, Law, Memory, check_contract, check_contract_along, trace};
+use contact_models::{ContactLaw, Force, Hysteretic, Law, Memory, check_contract, check_contract_along, trace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -141,5 +141,23 @@ fn laws_have_the_required_properties_on_any_scale() {
             let kept = check_contract(&law, compression_m, speed_m_s);
             assert!(kept.is_ok(), "{law:?} {compression_m} {speed_m_s}: {}", kept.unwrap_err());
         }
+    }
+}
+
+/// The widest hysteresis that is allowed leaves a force near zero on unloading, and the internal variable may follow the compression as
+/// any power up to a thousand: a long run checks the law, and must not stop.
+#[test]
+fn hysteretic_laws_at_the_ends_of_their_range_keep_the_contract() {
+    let cases = [
+        (0.0156, 9.1, 0.0, 3e-8),
+        (1.6, 10.6, 1.3e-6, 1e-4),
+        (50.0, 53.4, 7.7e-6, 1e-3),
+        (90.037, 654.0, 0.0, 1e-7),
+        (1.6, 1000.0, 0.0, 1.0),
+    ];
+    for (theta_m, k_bar, epsilon_m, compression_m) in cases {
+        let law = Hysteretic { stiffness_n_m1_5: 1e8, theta_m, beta: 1.0 + theta_m, k_bar, epsilon_m };
+        let kept = check_contract(&law.validated().unwrap(), compression_m, 1.0);
+        assert!(kept.is_ok(), "{law:?} {}", kept.unwrap_err());
     }
 }
