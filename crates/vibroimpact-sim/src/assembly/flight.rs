@@ -26,18 +26,15 @@ impl<'a> March<'a> {
             (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
             return true;
         }
-        let near = self.tables.steps.level_within(self.reach);
+        let steps = self.tables.steps;
+        let near = steps.level_within(self.reach);
         if go >= lasting {
-            if lasting <= self.reach {
-                self.coast(lasting, true)
-            } else {
-                self.rotate(self.tables.steps.level_within(lasting))
-            }
-        } else if self.tables.steps.level_within(go) < near + WINDOW {
-            self.rotate(self.tables.steps.level_within(go.min(lasting)));
+            if lasting <= self.reach { self.coast(lasting, true) } else { self.rotate(steps.level_within(lasting)) }
+        } else if steps.level_within(go) < near + WINDOW {
+            self.rotate(steps.level_within(go.min(lasting)));
         } else {
-            let by_level = lasting > self.tables.steps.step_s(near);
-            let window = if by_level { self.tables.steps.step_s(near) } else { lasting };
+            let by_level = lasting > steps.step_s(near);
+            let window = if by_level { steps.step_s(near) } else { lasting };
             let (mut first, mut clear): (Option<(usize, f64)>, f64) = (None, window);
             for c in 0..self.states.len() {
                 if self.clear_until(c) >= self.time_s + window {
@@ -70,10 +67,11 @@ impl<'a> March<'a> {
     }
 
     pub(super) fn rotate(&mut self, level: i32) {
-        self.flown = self.tables.steps.step_s(level);
-        self.show(self.tables.steps.step_s(level), &[], &[], &[]);
+        let h = self.tables.steps.step_s(level);
+        self.flown = h;
+        self.show(h, &[], &[], &[]);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
-        self.pass(self.tables.steps.step_s(level));
+        self.pass(h);
     }
 
     /// Free motion of any length within the reach of the series; with `whole`, to the next break or the end.

@@ -31,14 +31,12 @@ impl<'a> March<'a> {
         let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length, |c| self.begins(c));
         let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
-            return self.refine(self.level.max(self.tables.steps.level_within(length)) + 1);
+            return self.refine_within(length);
         };
         self.watch_window(&mut window, &mut landed);
         match self.judge_landed(&window, &landed) {
             Judgement::Meets(target, place) => self.head_for(target, place, length),
-            _ if self.excess(&window, &landed) > 1.0 => {
-                self.refine(self.level.max(self.tables.steps.level_within(length)) + 1)
-            }
+            _ if self.excess(&window, &landed) > 1.0 => self.refine_within(length),
             _ => self.commit_landed(&window, &landed),
         }
     }

@@ -101,14 +101,14 @@ impl<'a> March<'a> {
 
     /// A step with closed contacts: to a near event, to the end, or by a panel.
     fn contact(&mut self, trial: &mut Trial<'a>) {
-        let lasting = self.lasting();
+        let (steps, lasting) = (self.tables.steps, self.lasting());
         // a terminal panel is not better than a panel of similar length
-        let usual = 2.0 * self.tables.steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
+        let usual = 2.0 * steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
         // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
         let weighted = self.horizon.is_some_and(|horizon| self.ends_at(horizon.target).ends);
         let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
-        if self.tables.steps != Steps::OF_SECOND && !self.stepped {
-            // a terminal panel from event to event would have the same length, and the same error, in all runs
+        if steps != Steps::OF_SECOND && !self.stepped {
+            // a terminal panel from event to event would have the same length, and the same error, in any steps
             reach = 0.0;
         }
         let mut level = self.level;
@@ -122,13 +122,13 @@ impl<'a> March<'a> {
                 self.horizon = None;
                 return self.land(target, left, reach.min(lasting));
             }
-            level = level.max(self.tables.steps.level_within(SHARE * left));
+            level = level.max(steps.level_within(SHARE * left));
         }
-        if self.tables.steps.step_s(level) > lasting {
+        if steps.step_s(level) > lasting {
             if lasting <= reach {
                 return self.land_at(lasting);
             }
-            level = self.tables.steps.level_within(lasting);
+            level = steps.level_within(lasting);
         }
         self.try_panel(level, trial);
     }

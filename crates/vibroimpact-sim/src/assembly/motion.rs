@@ -309,6 +309,11 @@ impl<'a> March<'a> {
         self.level = level;
     }
 
+    /// Continues with steps of at most half this length.
+    pub(super) fn refine_within(&mut self, length: f64) {
+        self.refine(self.level.max(self.tables.steps.level_within(length)) + 1);
+    }
+
     /// Begins the statistics of all contacts anew.
     pub(super) fn begin_statistics(&mut self) {
         self.statistics_from_s = f64::INFINITY;
