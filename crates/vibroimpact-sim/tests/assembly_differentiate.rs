@@ -1,6 +1,7 @@
 //! Derivatives of runs of assemblies compared with differences of runs at a tolerance of 1e-13.
 
 use contact_models::{Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton};
+use num_complex::Complex64;
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Derivative, Derivatives, Differentiated, Force, Interval, Load, NoDerivative,
     Observer, Outcome, Parameter, Point, Run, Settings, Solver, run,
@@ -244,6 +245,48 @@ fn derivatives_by_a_harmonic_load_hold_at_early_times() {
     let turned = -2.0 * (0.5 * angle).sin() * (phase + 0.5 * angle).sin();
     let expected = speed / omega * (angle * phase.sin() + turned) / (-0.5 - speed * turned);
     assert!((start.value - expected).abs() < 1e-9 * expected.abs(), "{start:?} {expected}");
+}
+
+/// The velocity of a mode that a harmonic load of 1 N moves from rest, in closed form. Complex numbers give its derivatives.
+fn velocity_at_resonance([load, natural, zeta, time]: [Complex64; 4]) -> Complex64 {
+    let (square, drag) = (natural * natural - load * load, zeta * natural * load * 2.0);
+    let size = square * square + drag * drag;
+    let (along, across) = (square / size, -drag / size);
+    let steady =
+        |angle: Complex64| [along * angle.sin() + across * angle.cos(), along * angle.cos() - across * angle.sin()];
+    let [start, end] = [steady(Complex64::ZERO), steady(load * time)];
+    let (decay, damped) = (zeta * natural, natural * (1.0 - zeta * zeta).sqrt());
+    let (from, rate) = (-start[0], -load * start[1]);
+    let sine = (rate + decay * from) / damped;
+    let turned = [(damped * time).cos(), (damped * time).sin()];
+    let free = (damped * sine - decay * from) * turned[0] - (damped * from + decay * sine) * turned[1];
+    load * end[1] + (-decay * time).exp() * free
+}
+
+/// Near the resonance of a lightly damped mode neighbouring values may lie on both sides of the peak.
+#[test]
+fn derivatives_by_a_harmonic_load_hold_at_resonance() {
+    let pose: Pose = |n| {
+        let [load, natural, zeta, end_s] = n.try_into().unwrap();
+        let sides = [Point::OfBody { body: 0, shape: vec![1.0] }, Point::Ground];
+        let contacts = vec![Contact { sides, gap_m: 1.0, law: Hertz::new(1e8).unwrap().into() }];
+        let force = Force::Harmonic { force_n: 1.0, omega_rad_s: load, phase_rad: 0.0 };
+        let loads = vec![Load { body: 0, shape: vec![1.0], force }];
+        (Assembly { bodies: vec![Body::at_rest(modes(&[natural], zeta))], contacts, loads }, end_s)
+    };
+    for (load, zeta) in [(628.0, 1e-3), (628.0, 1e-6), (628.001, 1e-6), (628.01, 1e-4)] {
+        let numbers = vec![load, 628.0, zeta, 3.0];
+        let found = Case { pose, numbers: numbers.clone() }.differentiate(1e-9);
+        for (which, by) in found.derivatives.iter().enumerate().take(3) {
+            let step = 1e-30 * numbers[which];
+            let at = |i: usize| Complex64::new(numbers[i], if i == which { step } else { 0.0 });
+            let expected = velocity_at_resonance([at(0), at(1), at(2), at(3)]).im / step;
+            let velocity = by.as_ref().unwrap().contacts[0].velocity_m_s[0];
+            let error = (velocity.value - expected).abs();
+            assert!(error < 1e-6 * expected.abs(), "{load} {zeta} {which}: {velocity:?} {expected}");
+            assert!(error < velocity.uncertainty.unwrap(), "{load} {zeta} {which}: {velocity:?} {expected}");
+        }
+    }
 }
 
 fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {

@@ -12,6 +12,7 @@ use super::problem::{Force, Load};
 use super::system::{Link, Span, System};
 use super::wave::turned_mean;
 use crate::panel::legendre::{BASIS, Legendre, Q, TAYLOR, dot, work_of_unit_forces};
+use crate::panel::oscillator::BodyMode;
 use num_complex::Complex64;
 
 /// Phases of the harmonic loads on a panel, for all contacts: `e^{i Omega t}` at its start, and `e^{i Omega (t' - t)} - 1` at the
@@ -128,10 +129,7 @@ impl Loads {
         }
         let phasor = -Complex64::i() * Complex64::cis(phase_rad) * force_n;
         for (k, shape) in span.modes.clone().zip(&span.psi).filter(|(_, shape)| **shape != 0.0) {
-            let (omega, zeta) = (system.modes[k].omega_rad_s, system.modes[k].damping_ratio);
-            let square = (omega - omega_rad_s) * (omega + omega_rad_s);
-            let stiffness = Complex64::new(square, 2.0 * zeta * omega * omega_rad_s);
-            self.harmonics[at].modes[k] += phasor * *shape / stiffness;
+            self.harmonics[at].modes[k] += phasor * *shape / stiffness(&system.modes[k], omega_rad_s);
         }
     }
 
@@ -400,6 +398,13 @@ impl Loads {
     pub fn fastest_rad_s(&self) -> f64 {
         self.harmonics.iter().map(|harmonic| harmonic.omega_rad_s).fold(0.0, f64::max)
     }
+}
+
+/// Dynamic stiffness of a mode: `omega^2 - Omega^2 + 2 i zeta omega Omega`.
+pub(crate) fn stiffness(mode: &BodyMode, omega_rad_s: f64) -> Complex64 {
+    let BodyMode { omega_rad_s: omega, damping_ratio } = *mode;
+    let square = (omega - omega_rad_s) * (omega + omega_rad_s);
+    Complex64::new(square, 2.0 * damping_ratio * omega * omega_rad_s)
 }
 
 /// `e^{ix} - 1` without cancellation.

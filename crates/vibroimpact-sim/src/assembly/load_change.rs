@@ -1,12 +1,12 @@
 //! Derivatives of the effect of loads with respect to a parameter.
 //!
 //! The motion under loads has a closed form ([`super::load`]). Under a harmonic load it is `Re(G e^{i Omega t})`, whose derivative at a
-//! fixed time is `Re((dG + i t dOmega G) e^{i Omega t})`, with `dG` and `dOmega` the slopes through four neighbouring values of the
-//! parameter. A slope of the motion itself would be wrong at late times, when the neighbours are out of phase, and lost in rounding at
+//! fixed time is `Re((dG + i t dOmega G) e^{i Omega t})`, with `dOmega` the slope through four neighbouring values of the parameter. `G` is
+//! the quotient of the load on a mode and its dynamic stiffness, of which each has a slope, near resonance too. A slope of the motion itself would be wrong at late times, when the neighbours are out of phase, and lost in rounding at
 //! early times, when the motion is small compared with `G`. The motion under piecewise linear loads is simple enough for its slope
 //! through the neighbours. If the time itself is shifted, the rate of the motion times the shift has to be added; the caller does so.
 
-use super::load::{Loads, swept};
+use super::load::{Loads, stiffness, swept};
 use super::problem::Posed;
 use super::stencil::Stencil;
 use super::system::{Link, Span, System};
@@ -85,15 +85,22 @@ impl LoadChange {
 
     fn harmonic(&self, system: &System, psi: &[Vec<Span>], i: usize) -> HarmonicChange {
         let near = self.neighbours.each_ref().map(|(_, loads)| &loads.harmonics[i]);
-        let gain = |values: [Complex64; 4]| {
-            let [re, im] = [values.map(|value| value.re), values.map(|value| value.im)];
-            let of = |find: &dyn Fn([f64; 4]) -> f64| Complex64::new(find(re), find(im));
-            Gain { value: of(&|values| self.stencil.value(values)), change: of(&|values| self.stencil.slope(values)) }
+        let omega = near.map(|harmonic| harmonic.omega_rad_s);
+        let omega_rad_s = self.stencil.value(omega);
+        // `G = f/D`: near resonance the force and the dynamic stiffness of a mode are smooth where their quotient is not
+        let gain = |place: usize, places: [usize; 4]| {
+            let near_stiffness: [Complex64; 4] =
+                array::from_fn(|n| stiffness(&self.neighbours[n].0.modes[places[n]], omega[n]));
+            let force = array::from_fn(|n| near[n].modes[places[n]] * near_stiffness[n]);
+            let stiffness = stiffness(&system.modes[place], omega_rad_s);
+            let value = by_parts(force, |values| self.stencil.value(values)) / stiffness;
+            let slope = |values| by_parts(values, |values| self.stencil.slope(values));
+            Gain { value, change: (slope(force) - value * slope(near_stiffness)) / stiffness }
         };
         let mut modes = vec![Gain { value: Complex64::ZERO, change: Complex64::ZERO }; system.modes.len()];
         for (body, places) in system.place.iter().enumerate() {
             for (k, &place) in places.iter().enumerate() {
-                modes[place] = gain(array::from_fn(|n| near[n].modes[self.neighbours[n].0.place[body][k]]));
+                modes[place] = gain(place, array::from_fn(|n| self.neighbours[n].0.place[body][k]));
             }
         }
         // from the modes, so that their errors and those of the relative motion cancel
@@ -106,13 +113,7 @@ impl LoadChange {
             change: sum(&link.spans, &|gain| gain.change) + sum(by, &|gain| gain.value),
         };
         let contacts = system.links.iter().zip(psi).map(contact).collect();
-        let omega = near.map(|harmonic| harmonic.omega_rad_s);
-        HarmonicChange {
-            omega_rad_s: self.stencil.value(omega),
-            omega_change: self.stencil.slope(omega),
-            modes,
-            contacts,
-        }
+        HarmonicChange { omega_rad_s, omega_change: self.stencil.slope(omega), modes, contacts }
     }
 
     fn slope(&self, of: impl Fn(&System, &Loads) -> f64) -> f64 {
@@ -204,4 +205,9 @@ impl LoadChange {
         });
         self.of_modes(system, &motions)
     }
+}
+
+/// A linear function of four numbers, of complex ones.
+fn by_parts(values: [Complex64; 4], of: impl Fn([f64; 4]) -> f64) -> Complex64 {
+    Complex64::new(of(values.map(|value| value.re)), of(values.map(|value| value.im)))
 }
