@@ -278,7 +278,7 @@ impl Solver {
         let known = if estimate_uncertainty { self.restitutions(&run, &impact) } else { None };
         let restitution_uncertainty = known.and_then(|known| {
             let coarser = beside.get_or_insert_with(|| self.coarser(&impact, &lowered, keep));
-            self.uncertainty(&known, coarser, &impact, &mut |factor| solve(factor, Keep::Result), &mut counts)
+            self.uncertainty(&known, coarser, &impact, || solve(FURTHER, Keep::Result), &mut counts)
         });
         let solution = Solution {
             outcome: run.outcome,
@@ -318,15 +318,14 @@ impl Solver {
         self.run(impact, &self.lower(impact), (BESIDE, responses), SOLUTIONS[BESIDE].1, Keep::Motion)
     }
 
-    /// Estimated error of the restitution, from coarser solutions of the same impact, and from a further one that `solve` finds with so
-    /// many times the tolerance: `None` if one of them stopped at a limit, and 1
-    /// if one ended without a restitution.
+    /// Estimated error of the restitution, from coarser solutions of the same impact and, where it is needed, a further one: `None` if
+    /// one of them stopped at a limit, and 1 if one ended without a restitution.
     fn uncertainty(
         &self,
         known: &Restitutions,
         coarser: &[(Run, Option<Restitutions>)],
         impact: &Impact,
-        solve: &mut impl FnMut(f64) -> Run,
+        further: impl FnOnce() -> Run,
         counts: &mut Counts,
     ) -> Option<f64> {
         let without = |run: &Run| if run.outcome.stopped_by().is_some() { None } else { Some(1.0) };
@@ -339,7 +338,7 @@ impl Solver {
             same_contacts &= known.flights.len() == coarser.flights.len();
         }
         if spread > tolerance || !same_contacts {
-            let run = solve(FURTHER);
+            let run = further();
             *counts += run.counts;
             let Some(further) = self.restitutions(&run, impact) else { return without(&run) };
             spread = spread.max(2.0 * known.difference(&further));
