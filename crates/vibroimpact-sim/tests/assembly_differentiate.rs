@@ -234,6 +234,29 @@ fn derivatives_by_the_frequency_of_a_load_hold_at_late_times() {
     }
 }
 
+/// Two loads have the same frequency, or the frequency of one is that of the other at a neighbouring value.
+#[test]
+fn derivatives_by_one_of_two_frequencies_hold_where_they_meet() {
+    let pose: Pose = |n| {
+        let [first, second, end_s] = n.try_into().unwrap();
+        let (mut assembly, end_s) = driven(&[first, 0.7, 1.0, 0.0, end_s]);
+        let mut load = assembly.loads[0].clone();
+        load.force = Force::Harmonic { force_n: 20.0, omega_rad_s: second, phase_rad: 0.2 };
+        assembly.loads.push(load);
+        (assembly, end_s)
+    };
+    let end_s = 200.0;
+    for second in [628.0, 628.0 + 1e-5 * 628.0] {
+        let found = Case { pose, numbers: vec![628.0, second, end_s] }.differentiate(1e-9);
+        for ((omega, phase), by) in [(628.0, 0.7f64), (second, 0.2)].into_iter().zip(&found.derivatives) {
+            let (before, after) = (phase.cos(), (omega * end_s + phase).sin_cos());
+            let expected = 20.0 / (0.1 * omega) * (end_s * after.0 - (before - after.1) / omega);
+            let velocity = by.as_ref().unwrap().contacts[0].velocity_m_s[0];
+            assert!((velocity.value - expected).abs() < 1e-8 * expected.abs(), "{velocity:?} {expected}");
+        }
+    }
+}
+
 /// Just after the start the motion under a load is much smaller than its steady motion.
 #[test]
 fn derivatives_by_a_harmonic_load_hold_at_early_times() {
@@ -287,6 +310,26 @@ fn derivatives_by_a_harmonic_load_hold_at_resonance() {
             assert!(error < velocity.uncertainty.unwrap(), "{load} {zeta} {which}: {velocity:?} {expected}");
         }
     }
+}
+
+/// A load may have exactly the frequency of an undamped mode of a body that it does not act on, or at a node of which it acts.
+#[test]
+fn derivatives_exist_if_a_load_has_the_frequency_of_a_mode_that_it_does_not_excite() {
+    let pose: Pose = |n| {
+        let [natural, speed, force_n, end_s] = n.try_into().unwrap();
+        let law = Hertz::new(1e8).unwrap().into();
+        let sides = [of_mass(0, 0.1), Point::OfBody { body: 1, shape: vec![1.0, 0.5] }];
+        let contacts = vec![Contact { sides, gap_m: 0.0, law }];
+        let force = |force_n| Force::Harmonic { force_n, omega_rad_s: 628.0, phase_rad: 0.7 };
+        let loads = vec![
+            Load { body: 0, shape: vec![0.1f64.sqrt().recip()], force: force(force_n) },
+            Load { body: 1, shape: vec![0.0, 1.0], force: force(5.0) },
+        ];
+        let bodies = vec![Body::mass(0.1, -1e-4, speed), Body::at_rest(modes(&[natural, 1500.0], 0.0))];
+        (Assembly { bodies, contacts, loads }, end_s)
+    };
+    let (compared, covered) = Case { pose, numbers: vec![628.0, 1.0, 5.0, 0.01] }.check(1e-6);
+    assert_eq!(compared, covered);
 }
 
 fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {

@@ -1,9 +1,10 @@
 //! Derivatives of a run of an assembly with respect to the numbers that define it.
 
 use super::change::Change;
+use super::load::HarmonicLoad;
 use super::miss::NearMiss;
 use super::no_derivative::NoDerivative;
-use super::problem::{Assembly, Point, Posed, Settings};
+use super::problem::{Assembly, Load, Point, Posed, Settings};
 use super::responses::Responses;
 use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Keep, Solver, follow};
@@ -25,7 +26,7 @@ pub struct Parameter<'a, L> {
     /// Differences of the neighbouring values from the value (unit of the parameter): four different numbers, best
     /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.
     pub offsets: [f64; 4],
-    /// The assembly at these values.
+    /// The assembly at these values, with the same numbers of bodies, modes and contacts, and harmonic loads on the same bodies.
     pub neighbours: [&'a Assembly<L>; 4],
     /// The end of the run at these values (s).
     pub end_s: [f64; 4],
@@ -304,9 +305,12 @@ impl Solver<'_> {
                 |one: &[Point; 2], other: &[Point; 2]| one.each_ref().map(body_of) == other.each_ref().map(body_of);
             let contacts = neighbour.contacts.len() == own.sides.len()
                 && neighbour.contacts.iter().zip(&own.sides).all(|(one, other)| sides(&one.sides, other));
-            let allowed = "an assembly with the same numbers of bodies, modes and contacts";
+            let driven =
+                |loads: &[Load]| loads.iter().filter_map(HarmonicLoad::of).map(|load| load.body).collect::<Vec<_>>();
+            let loads = driven(&neighbour.loads) == driven(own.loads);
+            let allowed = "an assembly with the same numbers of bodies, modes and contacts, and with harmonic loads on the same bodies";
             InvalidInput::unless(
-                bodies && contacts,
+                bodies && contacts && loads,
                 ("parameters", i, ("neighbours", k)),
                 "another assembly",
                 allowed,

@@ -28,6 +28,25 @@ fn part(place: usize, h: f64) -> f64 {
     BASIS.nodes.get(place).map_or(h, |node| node * h)
 }
 
+/// A harmonic load.
+#[derive(Clone, Copy)]
+pub(crate) struct HarmonicLoad<'a> {
+    pub body: usize,
+    pub shape: &'a [f64],
+    pub omega_rad_s: f64,
+    /// The force is the real part of this, turned by `e^{i Omega t}` (N).
+    pub phasor: Complex64,
+}
+
+impl<'a> HarmonicLoad<'a> {
+    /// `None` if it is not harmonic.
+    pub fn of(load: &'a Load) -> Option<HarmonicLoad<'a>> {
+        let Force::Harmonic { force_n, omega_rad_s, phase_rad } = load.force else { return None };
+        let phasor = -Complex64::i() * Complex64::cis(phase_rad) * force_n;
+        Some(HarmonicLoad { body: load.body, shape: &load.shape, omega_rad_s, phasor })
+    }
+}
+
 /// Loads of one frequency.
 #[derive(Debug, Clone)]
 pub(crate) struct Harmonic {
@@ -94,11 +113,10 @@ impl Loads {
         };
         for load in given {
             let span = system.span(load.body, &load.shape);
-            match &load.force {
-                Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
-                    loads.add_harmonic(system, &span, *force_n, *omega_rad_s, *phase_rad);
-                }
-                force => {
+            match HarmonicLoad::of(load) {
+                Some(harmonic) => loads.add_harmonic(system, &span, &harmonic),
+                None => {
+                    let force = &load.force;
                     if let Force::Sampled { times_s, .. } = force {
                         loads.breaks.extend(times_s.iter().filter(|time| **time > 0.0));
                     }
@@ -120,14 +138,13 @@ impl Loads {
         loads
     }
 
-    fn add_harmonic(&mut self, system: &System, span: &Span, force_n: f64, omega_rad_s: f64, phase_rad: f64) {
+    fn add_harmonic(&mut self, system: &System, span: &Span, &HarmonicLoad { omega_rad_s, phasor, .. }: &HarmonicLoad) {
         let found = self.harmonics.iter().position(|harmonic| harmonic.omega_rad_s == omega_rad_s);
         let at = found.unwrap_or(self.harmonics.len());
         if found.is_none() {
             let modes = vec![Complex64::ZERO; system.modes.len()];
             self.harmonics.push(Harmonic { omega_rad_s, modes, contacts: Vec::new() });
         }
-        let phasor = -Complex64::i() * Complex64::cis(phase_rad) * force_n;
         for (k, shape) in span.modes.clone().zip(&span.psi).filter(|(_, shape)| **shape != 0.0) {
             self.harmonics[at].modes[k] += phasor * *shape / stiffness(&system.modes[k], omega_rad_s);
         }

@@ -2,11 +2,12 @@
 //!
 //! The motion under loads has a closed form ([`super::load`]). Under a harmonic load it is `Re(G e^{i Omega t})`, whose derivative at a
 //! fixed time is `Re((dG + i t dOmega G) e^{i Omega t})`, with `dOmega` the slope through four neighbouring values of the parameter. `G` is
-//! the quotient of the load on a mode and its dynamic stiffness, of which each has a slope, near resonance too. A slope of the motion itself would be wrong at late times, when the neighbours are out of phase, and lost in rounding at
-//! early times, when the motion is small compared with `G`. The motion under piecewise linear loads is simple enough for its slope
-//! through the neighbours. If the time itself is shifted, the rate of the motion times the shift has to be added; the caller does so.
+//! the quotient of the load on a mode and its dynamic stiffness, of which each has a slope, near resonance too. A slope of the motion itself
+//! would be wrong at late times, when the neighbours are out of phase, and lost in rounding at early times, when the motion is small
+//! compared with `G`. The motion under piecewise linear loads is simple enough for its slope through the neighbours. If the time itself
+//! is shifted, the rate of the motion times the shift has to be added; the caller does so.
 
-use super::load::{Loads, stiffness, swept};
+use super::load::{HarmonicLoad, Loads, stiffness, swept};
 use super::problem::Posed;
 use super::stencil::Stencil;
 use super::system::{Link, Span, System};
@@ -36,6 +37,17 @@ struct HarmonicChange {
 struct Gain {
     value: Complex64,
     change: Complex64,
+}
+
+/// Harmonic loads that have the same frequency at each neighbour.
+struct NearHarmonics {
+    omega_rad_s: [f64; 4],
+    /// The forces on each mode, in the order of the system.
+    modes: Vec<[Complex64; 4]>,
+}
+
+impl Gain {
+    const ZERO: Gain = Gain { value: Complex64::ZERO, change: Complex64::ZERO };
 }
 
 impl HarmonicChange {
@@ -74,30 +86,28 @@ impl LoadChange {
             (system, loads)
         });
         let mut change = LoadChange { harmonics: Vec::new(), neighbours, stencil };
-        let count = change.neighbours[0].1.harmonics.len();
-        // frequencies that coincide at a neighbour alone are left to the slope of the motion
-        if change.neighbours.iter().all(|(_, loads)| loads.harmonics.len() == count) {
-            change.harmonics = (0..count).map(|i| change.harmonic(system, psi, i)).collect();
-            change.neighbours.iter_mut().for_each(|(_, loads)| loads.harmonics.clear());
-        }
+        change.neighbours.iter_mut().for_each(|(_, loads)| loads.harmonics.clear());
+        change.harmonics = harmonics(system, posed).iter().map(|near| change.harmonic(system, psi, near)).collect();
         Some(change)
     }
 
-    fn harmonic(&self, system: &System, psi: &[Vec<Span>], i: usize) -> HarmonicChange {
-        let near = self.neighbours.each_ref().map(|(_, loads)| &loads.harmonics[i]);
-        let omega = near.map(|harmonic| harmonic.omega_rad_s);
+    fn harmonic(&self, system: &System, psi: &[Vec<Span>], near: &NearHarmonics) -> HarmonicChange {
+        let omega = near.omega_rad_s;
         let omega_rad_s = self.stencil.value(omega);
         // `G = f/D`: near resonance the force and the dynamic stiffness of a mode are smooth where their quotient is not
         let gain = |place: usize, places: [usize; 4]| {
-            let near_stiffness: [Complex64; 4] =
-                array::from_fn(|n| stiffness(&self.neighbours[n].0.modes[places[n]], omega[n]));
-            let force = array::from_fn(|n| near[n].modes[places[n]] * near_stiffness[n]);
+            let force = near.modes[place];
+            if force == [Complex64::ZERO; 4] {
+                // the frequency of a mode that is not excited may be that of the load
+                return Gain::ZERO;
+            }
+            let near_stiffness = array::from_fn(|n| stiffness(&self.neighbours[n].0.modes[places[n]], omega[n]));
             let stiffness = stiffness(&system.modes[place], omega_rad_s);
             let value = by_parts(force, |values| self.stencil.value(values)) / stiffness;
             let slope = |values| by_parts(values, |values| self.stencil.slope(values));
             Gain { value, change: (slope(force) - value * slope(near_stiffness)) / stiffness }
         };
-        let mut modes = vec![Gain { value: Complex64::ZERO, change: Complex64::ZERO }; system.modes.len()];
+        let mut modes = vec![Gain::ZERO; system.modes.len()];
         for (body, places) in system.place.iter().enumerate() {
             for (k, &place) in places.iter().enumerate() {
                 modes[place] = gain(place, array::from_fn(|n| self.neighbours[n].0.place[body][k]));
@@ -210,4 +220,24 @@ impl LoadChange {
 /// A linear function of four numbers, of complex ones.
 fn by_parts(values: [Complex64; 4], of: impl Fn([f64; 4]) -> f64) -> Complex64 {
     Complex64::new(of(values.map(|value| value.re)), of(values.map(|value| value.im)))
+}
+
+/// The harmonic loads of the neighbours. Two that differ in frequency at one of them alone stay apart.
+fn harmonics(system: &System, posed: [&Posed; 4]) -> Vec<NearHarmonics> {
+    let mut found: Vec<NearHarmonics> = Vec::new();
+    let mut lists = posed.map(|posed| posed.loads.iter().filter_map(HarmonicLoad::of));
+    while let [Some(a), Some(b), Some(c), Some(d)] = lists.each_mut().map(Iterator::next) {
+        let near = [a, b, c, d];
+        let omega_rad_s = near.map(|load| load.omega_rad_s);
+        let at = found.iter().position(|one| one.omega_rad_s == omega_rad_s).unwrap_or(found.len());
+        if at == found.len() {
+            found.push(NearHarmonics { omega_rad_s, modes: vec![[Complex64::ZERO; 4]; system.modes.len()] });
+        }
+        for (k, &place) in system.place[a.body].iter().enumerate() {
+            for (force, load) in found[at].modes[place].iter_mut().zip(near) {
+                *force += load.phasor * load.shape[k];
+            }
+        }
+    }
+    found
 }
