@@ -5,8 +5,9 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, OrbitOutcome, OrbitSettings,
-    Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch, follow_doubled, run,
+    Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, Orbit, OrbitOutcome,
+    OrbitSettings, Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch,
+    follow_doubled, run,
 };
 
 fn point(shape: f64) -> Point {
@@ -347,4 +348,54 @@ fn a_motion_that_depends_on_what_a_contact_keeps_from_earlier_periods_is_no_orbi
         let found = find_orbit(&assembly, &OrbitSettings::default()).unwrap();
         assert!(matches!(found, OrbitOutcome::Found(_)), "{:?} {found}", assembly.contacts[0].law);
     }
+}
+
+/// How far the state of a single body is from its repetition after three periods of an orbit, relative to its largest number. Contacts
+/// keep their internal variables from period to period.
+fn drift(mut assembly: Assembly<Law>, orbit: &Orbit) -> f64 {
+    for load in &mut assembly.loads {
+        if let Force::Harmonic { omega_rad_s, phase_rad, .. } = &mut load.force {
+            *phase_rad += *omega_rad_s * orbit.phase_s;
+        }
+    }
+    let n = orbit.state.len() / 2;
+    assembly.bodies[0].amplitude = orbit.state[..n].to_vec();
+    assembly.bodies[0].rate = orbit.state[n..].to_vec();
+    let found = run(&assembly, &Settings::until(3.0 * orbit.period_s), &mut ()).unwrap();
+    let after = found.amplitude[0].iter().chain(&found.rate[0]);
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    largest(&after.zip(&orbit.state).map(|(a, b)| a - b).collect::<Vec<_>>()) / largest(&orbit.state)
+}
+
+fn hysteretic_stop(stiffness_n_m1_5: f64) -> Law {
+    let law = Hysteretic { stiffness_n_m1_5, theta_m: 0.5, beta: 0.5, k_bar: 3.0, epsilon_m: 0.0 };
+    law.validated().unwrap().into()
+}
+
+/// Along a branch the contact is closed at ever other moments of the period. States are then compared at another one.
+#[test]
+fn a_branch_is_followed_where_a_hysteretic_contact_closes_at_other_moments() {
+    let build = |omega: f64| {
+        let mut assembly = driven(0.05, 1e-3, 1.0, omega);
+        assembly.contacts[0].law = hysteretic_stop(3e4);
+        Ok::<_, InvalidInput>(assembly)
+    };
+    let branch = follow_branch(build, &BranchSettings::over(22.0, 9.0), &|| false).unwrap();
+    assert!(branch.complete, "{:?}", branch.points.last());
+    for point in branch.points.iter().filter(|point| point.orbit.stable) {
+        let moved = drift(build(point.parameter).unwrap(), &point.orbit);
+        assert!(moved < 1e-6, "{moved:e} {point:?}");
+    }
+}
+
+/// One of two stops without a gap between them is always closed. States are compared while the one with internal variables is open.
+#[test]
+fn two_stops_without_a_gap_between_them_have_orbits_if_one_remembers_nothing() {
+    let mut assembly = driven(0.05, 1e-3, 1.0, 5.0);
+    let sides = [point(1.0), Point::Ground];
+    assembly.contacts.push(Contact { sides, gap_m: -1e-3, law: hysteretic_stop(3e3) });
+    let OrbitOutcome::Found(orbit) = find_orbit(&assembly, &OrbitSettings::default()).unwrap() else { panic!() };
+    assert!(orbit.intervals_per_period.iter().all(|count| *count > 0), "{orbit:?}");
+    let moved = drift(assembly, &orbit);
+    assert!(moved < 1e-6, "{moved:e}");
 }

@@ -163,7 +163,7 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
         OrbitOutcome::Remembers { contact } => return Ok(Branch { remembers: Some(contact), ..Branch::default() }),
         _ => return Ok(Branch { interrupted: stop(), ..Branch::default() }),
     };
-    let follower = Follower::new(build, settings, &first, stop);
+    let mut follower = Follower::new(build, settings, &first, stop);
     let start = BranchPoint { parameter: settings.from, orbit: *first };
     let tangent = follower.first_tangent(&start)?;
     follower.follow(start, tangent)
@@ -215,11 +215,32 @@ fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
     found
 }
 
+/// A step along a branch.
+enum Step {
+    /// The next orbit, and the number of iterations.
+    Found(BranchPoint, u32),
+    /// This contact is closed where states are compared.
+    Remembers(usize),
+    None,
+}
+
+impl Step {
+    fn found(self) -> Option<BranchPoint> {
+        match self {
+            Step::Found(point, _) => Some(point),
+            Step::Remembers(_) | Step::None => None,
+        }
+    }
+}
+
 struct Follower<'a, F> {
     build: F,
     settings: &'a BranchSettings,
-    /// The phase at which states are compared, as a part of the period of the loads; it is the same along the branch.
+    /// The phase at which states are compared, as a part of the period of the loads. It is the same along the branch as long as the
+    /// contacts with internal variables are open then.
     phase_part: f64,
+    /// Those that were closed, at the latest phase or an earlier one.
+    remembering: Vec<usize>,
     /// On a branch that began at a period doubling: half the periods of the loads.
     half: Option<u32>,
     stop: &'a dyn Fn() -> bool,
@@ -233,11 +254,11 @@ where
 {
     fn new(build: F, settings: &'a BranchSettings, first: &Orbit, stop: &'a dyn Fn() -> bool) -> Follower<'a, F> {
         let phase_part = first.phase_s * f64::from(first.forcing_periods) / first.period_s;
-        Follower { build, settings, phase_part, half: None, stop }
+        Follower { build, settings, phase_part, remembering: Vec::new(), half: None, stop }
     }
 
     /// Follows the branch from an orbit along a tangent.
-    fn follow(&self, start: BranchPoint, tangent: Option<DVector<f64>>) -> Result<Branch, E> {
+    fn follow(&mut self, start: BranchPoint, tangent: Option<DVector<f64>>) -> Result<Branch, E> {
         let settings = self.settings;
         let mut current = start.clone();
         let mut branch = Branch { points: vec![start], ..Branch::default() };
@@ -245,11 +266,22 @@ where
         // the state changes fastest where a branch of twice the period begins
         let mut step = if self.half.is_some() { FIRST_OF_DOUBLED * settings.step } else { settings.step };
         let mut asymmetry: Option<DVector<f64>> = None;
+        let mut turned = false;
         while branch.points.len() < settings.max_orbits {
             let found = self.step(&current, &tangent, step)?;
             let found = match found {
-                Some((next, iterations)) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
-                None => None,
+                Step::Found(next, iterations) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
+                Step::Remembers(contact) if !turned || !self.remembering.contains(&contact) => {
+                    if !self.remembering.contains(&contact) {
+                        self.remembering.push(contact);
+                    }
+                    turned = true;
+                    if self.turn(&mut current, &mut tangent)? && asymmetry.is_some() {
+                        asymmetry = self.asymmetry(&current)?;
+                    }
+                    continue;
+                }
+                Step::Remembers(_) | Step::None => None,
             };
             // a branch of twice the period does not begin along the one of half the period
             let found = found.filter(|(.., moved)| {
@@ -286,7 +318,7 @@ where
             let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
             special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
             branch.special.append(&mut special);
-            (current, tangent) = (next, new_tangent);
+            (current, tangent, turned) = (next, new_tangent, false);
             branch.points.push(current.clone());
             let (low, high) = settings.limits();
             if !(low < current.parameter && current.parameter < high) {
@@ -412,8 +444,32 @@ where
         if size > 0.0 { difference / size } else { before.clone() }
     }
 
-    /// The next orbit along the tangent, and the number of iterations; `None` if none was found.
-    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Option<(BranchPoint, u32)>, E> {
+    /// Compares states at the middle of the longest time at which the remembering contacts are open; `false` where that fails.
+    fn turn(&mut self, current: &mut BranchPoint, tangent: &mut DVector<f64>) -> Result<bool, E> {
+        let scales = self.scales(current)?;
+        let state = Self::state(&current.orbit);
+        let n = state.len();
+        let mut map = self.map(current.parameter)?;
+        let Ok(part) = map.to_opening(&state, &self.remembering)? else { return Ok(false) };
+        // the tangent turns as the difference from a neighbour does
+        let ahead = DIFFERENCE * &*tangent;
+        let beside = &state + ahead.rows(0, n).component_mul(&scales);
+        let parameter = current.parameter + ahead[n] * self.range();
+        let Ok(mut map_beside) = self.map(parameter) else { return Ok(false) };
+        let (Ok(state), Ok(beside)) = (map.turn(state, part)?, map_beside.turn(beside, part)?) else {
+            return Ok(false);
+        };
+        let OrbitOutcome::Found(orbit) = refine(&map, state.clone(), &self.settings.orbit)? else { return Ok(false) };
+        self.phase_part = (self.phase_part + part) % 1.0;
+        current.orbit = *orbit;
+        let moved = (beside - state).component_div(&self.scales(current)?) / DIFFERENCE;
+        let turned = moved.insert_row(n, tangent[n]);
+        *tangent = &turned / turned.norm();
+        Ok(true)
+    }
+
+    /// The next orbit along the tangent, and the number of iterations.
+    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Step, E> {
         let scales = self.scales(from)?;
         let base = self.scaled(from, &scales);
         let n = scales.len();
@@ -421,29 +477,30 @@ where
         for iteration in 1..=ITERATIONS_MAX {
             let state = at.rows(0, n).component_mul(&scales);
             let parameter = at[n] * self.range();
-            let Ok(map) = self.map(parameter) else { return Ok(None) };
-            let Ok(image) = map.apply(&state)? else { return Ok(None) };
-            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(None) };
+            let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
+            let Ok(image) = map.apply(&state)? else { return Ok(Step::None) };
+            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(Step::None) };
             let defect = (&image - &state).component_div(&scales);
             let made = (&at - &base).dot(tangent) - step;
             let whole = DMatrix::from_fn(n + 1, n + 1, |i, j| if i < n { matrix[(i, j)] } else { tangent[j] });
             let right = DVector::from_fn(n + 1, |i, _| if i < n { -defect[i] } else { -made });
-            let Some(change) = whole.lu().solve(&right) else { return Ok(None) };
+            let Some(change) = whole.lu().solve(&right) else { return Ok(Step::None) };
             if change.norm() > 10.0 * step + 1e-3 {
-                return Ok(None);
+                return Ok(Step::None);
             }
             at += &change;
             if change.amax() < self.settings.orbit.closure.sqrt() * 1e-2 {
                 let parameter = at[n] * self.range();
                 let state = at.rows(0, n).component_mul(&scales);
-                let Ok(map) = self.map(parameter) else { return Ok(None) };
+                let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
                 return Ok(match refine(&map, state, &self.settings.orbit)? {
-                    OrbitOutcome::Found(orbit) => Some((BranchPoint { parameter, orbit: *orbit }, iteration)),
-                    _ => None,
+                    OrbitOutcome::Found(orbit) => Step::Found(BranchPoint { parameter, orbit: *orbit }, iteration),
+                    OrbitOutcome::Remembers { contact } => Step::Remembers(contact),
+                    _ => Step::None,
                 });
             }
         }
-        Ok(None)
+        Ok(Step::None)
     }
 
     /// The orbit at the end of the range, if the next one lies beyond it and this one is found; otherwise the next one.
@@ -476,10 +533,10 @@ where
         let mut orbit = from.orbit.clone();
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            let Some((point, _)) = self.step(from, tangent, middle)? else { break };
+            let Some(point) = self.step(from, tangent, middle)?.found() else { break };
             // a fold is the extremum of the parameter
             let passed = if kind == Special::Fold {
-                let Some((beyond, _)) = self.step(from, tangent, middle + 1e-3 * (high - low))? else { break };
+                let Some(beyond) = self.step(from, tangent, middle + 1e-3 * (high - low))?.found() else { break };
                 (beyond.parameter - point.parameter) * tangent[tangent.len() - 1] * self.range() < 0.0
             } else {
                 differences(&from.orbit, &point.orbit, 1.0).contains(&kind)
@@ -495,7 +552,7 @@ where
             }
         }
         if above.is_nan() {
-            above = self.step(from, tangent, high)?.map_or(below, |(point, _)| point.parameter);
+            above = self.step(from, tangent, high)?.found().map_or(below, |point| point.parameter);
         }
         let (parameter, uncertainty) = (0.5 * (below + above), 0.5 * (above - below).abs());
         Ok(SpecialPoint { kind, parameter, uncertainty, before_orbit, orbit })

@@ -6,9 +6,9 @@
 //! ([`Solver::differentiate`] computes the same for other parameters). At grazing contacts the map has no derivative. Central
 //! differences then replace it, and Newton's method may fail to converge.
 //!
-//! The states are compared at a moment at which every contact is open, if there is one, because the internal variables of a
-//! closed contact are not part of `x`. Neither is the indentation of an open one. If the motion depends on either, a fixed point of
-//! the map is not a periodic motion ([`OrbitOutcome::Remembers`]).
+//! The states are compared at a moment at which every contact is open, if there is one, or else every contact that turns out to have
+//! internal variables, because those of a closed contact are not part of `x`. Neither is the indentation of an open one. If the motion
+//! depends on either, a fixed point of the map is not a periodic motion ([`OrbitOutcome::Remembers`]).
 
 use super::period::CommonPeriod;
 use super::problem::{Assembly, Force, Settings};
@@ -23,6 +23,8 @@ use std::{fmt, iter};
 
 /// Step of finite differences, relative to the size of the motion.
 const DIFFERENCE: f64 = 1e-5;
+/// States are not compared within a shorter part of the period, as between two stops of which one opens where the other closes.
+const LEAST_OPEN: f64 = 1e-9;
 /// Least number of moments of a period at which it is sampled, and of a period of the slowest load.
 const SAMPLES: usize = 1024;
 const SAMPLES_OF_CYCLE: usize = 64;
@@ -138,8 +140,8 @@ pub enum OrbitOutcome {
         recurrence: Option<Recurrence>,
     },
     /// A motion was found that would repeat itself if this contact forgot all earlier motion once in each period. It does not
-    /// ([`ContactEnd::remembers`](super::ContactEnd::remembers)): its surfaces keep an indentation, or it is closed all the time, or
-    /// whenever another one is open, and its law has internal variables. The real motion differs.
+    /// ([`ContactEnd::remembers`](super::ContactEnd::remembers)): its surfaces keep an indentation, or its law has
+    /// internal variables, and it is closed all the time, or whenever another one of this kind is open. The real motion differs.
     Remembers {
         /// Index of the contact in [`Assembly::contacts`], from 0.
         contact: usize,
@@ -336,19 +338,29 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
                 Err(outcome) => return Ok(Err(outcome)),
             }
         }
-        let mut closed = Closed::default();
-        if let Err(outcome) = self.follow(&state, self.settings.end_s, &mut closed)? {
-            return Ok(Err(outcome));
+        let all: Vec<usize> = (0..self.assembly.contacts.len()).collect();
+        let by = match self.to_opening(&state, &all)? {
+            Ok(by) => by,
+            Err(outcome) => return Ok(Err(outcome)),
+        };
+        self.turn(state, by)
+    }
+
+    /// The part of a period of the loads until the middle of the longest time at which these contacts are open; zero if there is none.
+    pub fn to_opening(&self, state: &DVector<f64>, contacts: &[usize]) -> Reached<f64> {
+        let mut closed = Closed { contacts, intervals: Vec::new() };
+        let reached = self.follow(state, self.settings.end_s, &mut closed)?;
+        Ok(reached.map(|_| closed.middle_of_longest_gap(self.settings.end_s) / self.forcing_period_s))
+    }
+
+    /// Follows a state for a part of a period of the loads, and moves the phase with it.
+    pub fn turn(&mut self, state: DVector<f64>, part: f64) -> Reached<DVector<f64>> {
+        if part <= 0.0 {
+            return Ok(Ok(state));
         }
-        let phase = closed.middle_of_longest_gap(self.settings.end_s);
-        if phase > 0.0 {
-            match self.follow(&state, phase, &mut ())? {
-                Ok(reached) => state = reached,
-                Err(outcome) => return Ok(Err(outcome)),
-            }
-            self.set_phase(phase % self.forcing_period_s);
-        }
-        Ok(Ok(state))
+        let turned = self.follow(&state, part * self.forcing_period_s, &mut ())?;
+        self.set_phase((self.phase_s + part * self.forcing_period_s) % self.forcing_period_s);
+        Ok(turned)
     }
 
     /// Scales of the state: the largest rate for all rates, and the corresponding amplitude for each mode.
@@ -459,21 +471,25 @@ impl Observer for Stoppable<'_> {
     }
 }
 
-/// When any contact is closed.
-#[derive(Default)]
-struct Closed(Vec<(f64, f64)>);
+/// When any of some contacts is closed.
+struct Closed<'a> {
+    contacts: &'a [usize],
+    intervals: Vec<(f64, f64)>,
+}
 
-impl Observer for Closed {
-    fn interval(&mut self, _: usize, interval: &Interval) {
-        self.0.push((interval.start_s, interval.end_s.unwrap_or(f64::INFINITY)));
+impl Observer for Closed<'_> {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        if self.contacts.contains(&contact) {
+            self.intervals.push((interval.start_s, interval.end_s.unwrap_or(f64::INFINITY)));
+        }
     }
 }
 
-impl Closed {
+impl Closed<'_> {
     fn middle_of_longest_gap(mut self, end_s: f64) -> f64 {
-        self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (mut open_since, mut best) = (0.0, (0.0, 0.0));
-        for (start, end) in self.0.into_iter().chain([(end_s, end_s)]) {
+        self.intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut open_since, mut best) = (0.0, (LEAST_OPEN * end_s, 0.0));
+        for (start, end) in self.intervals.into_iter().chain([(end_s, end_s)]) {
             if start - open_since > best.0 {
                 best = (start - open_since, 0.5 * (start + open_since));
             }
@@ -626,9 +642,9 @@ mod tests {
             PeriodMap::new(rattling(), &OrbitSettings { tolerance: 1e-12, ..OrbitSettings::default() }, &|| false)
                 .unwrap();
         let state = map.start();
-        let mut closed = Closed::default();
+        let mut closed = Closed { contacts: &[0, 1, 2], intervals: Vec::new() };
         map.follow(&state, map.period_s(), &mut closed).unwrap().unwrap();
-        assert!(closed.0.len() > 2, "{:?}", closed.0);
+        assert!(closed.intervals.len() > 2, "{:?}", closed.intervals);
         let scales = map.scales(&state, &map.apply(&state).unwrap().unwrap());
         let exact = map.derivative(&state, &scales).unwrap().unwrap();
         let differences = map.differences(&state, &scales).unwrap().unwrap();

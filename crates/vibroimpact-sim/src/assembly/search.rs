@@ -64,9 +64,25 @@ fn from_start<L: ContactLaw + Clone>(
     transient_periods: u32,
 ) -> Result<OrbitOutcome, InvalidInput> {
     let mut map = PeriodMap::new(assembly.clone(), settings, stop)?;
-    match map.transient(start, transient_periods)? {
-        Ok(state) => refine(&map, state, settings),
-        Err(outcome) => Ok(OrbitOutcome::Stopped(outcome)),
+    let mut state = match map.transient(start, transient_periods)? {
+        Ok(state) => state,
+        Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
+    };
+    let mut remembering = Vec::new();
+    loop {
+        let contact = match refine(&map, state.clone(), settings)? {
+            OrbitOutcome::Remembers { contact } if !remembering.contains(&contact) => contact,
+            found => return Ok(found),
+        };
+        remembering.push(contact);
+        let turned = match map.to_opening(&state, &remembering)? {
+            Ok(part) => map.turn(state, part)?,
+            Err(outcome) => Err(outcome),
+        };
+        match turned {
+            Ok(turned) => state = turned,
+            Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
+        }
     }
 }
 
