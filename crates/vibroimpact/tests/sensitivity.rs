@@ -349,6 +349,17 @@ fn bodies_whose_names_hold_dots_have_derivatives() {
     }
 }
 
+/// A contact touches again as it opens. Along the coarser motion, too, no step fits between the two.
+#[test]
+fn a_contact_that_touches_as_it_opens_has_derivatives_with_uncertainties() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/touches_as_it_opens.json");
+    let table = AssemblyScene::read(&path).unwrap().sensitivity(&["bodies.b0.mass_kg".to_owned()]).unwrap().table;
+    let tree = serde_json::to_value(&table).unwrap();
+    let found: Vec<&Value> =
+        tree["derivatives"].as_object().unwrap().values().flat_map(|of| of.as_object().unwrap().values()).collect();
+    assert!(found.len() > 50 && found.iter().all(|of| of["uncertainty"].is_number()), "{found:?}");
+}
+
 /// The contacts of a scene of bodies with a number changed, solved to 1e-13.
 fn contacts(tree: &Value, pointer: &str, value: f64) -> Value {
     let mut tree = tree.clone();

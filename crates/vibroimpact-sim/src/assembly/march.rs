@@ -107,8 +107,9 @@ impl<'a> March<'a> {
         // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
         let weighted = self.horizon.is_some_and(|horizon| self.ends_at(horizon.target).ends);
         let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
-        if steps != Steps::OF_SECOND && !self.stepped {
-            // a terminal panel from event to event would have the same length, and the same error, in any steps
+        if steps != Steps::OF_SECOND && !self.stepped && self.events_at_once == 0 {
+            // a terminal panel from event to event would have the same length, and the same error, in any steps; no step fits between
+            // events that follow each other at once
             reach = 0.0;
         }
         let mut level = self.level;
