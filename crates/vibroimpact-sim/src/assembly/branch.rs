@@ -219,7 +219,7 @@ fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
 enum Step {
     /// The next orbit, and the number of iterations.
     Found(BranchPoint, u32),
-    /// This contact is closed where states are compared.
+    /// At this contact the motion depends on more than the states that are compared ([`OrbitOutcome::Remembers`]).
     Remembers(usize),
     None,
 }

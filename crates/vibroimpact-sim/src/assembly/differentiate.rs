@@ -239,7 +239,7 @@ impl Solver<'_> {
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
         let coarse = match fine.iter().any(Result::is_ok) {
-            true => self.along(self.between(), &coarser, (&around, &changes, &ends)).changes,
+            true => self.along(self.beside(), &coarser, (&around, &changes, &ends)).changes,
             false => Vec::new(),
         };
         let derivatives = fine.into_iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {

@@ -99,7 +99,7 @@ pub(crate) struct Loads {
 }
 
 impl Loads {
-    pub fn new(given: &[Load], system: &System) -> Loads {
+    pub fn new<'l>(given: impl IntoIterator<Item = &'l Load>, system: &System) -> Loads {
         let mut loads = Loads {
             harmonics: Vec::new(),
             lines: Vec::new(),

@@ -82,11 +82,11 @@ impl LoadChange {
         }
         let neighbours = posed.map(|posed| {
             let system = System::new(posed);
-            let loads = Loads::new(posed.loads, &system);
+            let lines = posed.loads.iter().filter(|load| HarmonicLoad::of(load).is_none());
+            let loads = Loads::new(lines, &system);
             (system, loads)
         });
         let mut change = LoadChange { harmonics: Vec::new(), neighbours, stencil };
-        change.neighbours.iter_mut().for_each(|(_, loads)| loads.harmonics.clear());
         change.harmonics = harmonics(system, posed).iter().map(|near| change.harmonic(system, psi, near)).collect();
         Some(change)
     }

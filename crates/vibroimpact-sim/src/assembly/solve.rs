@@ -53,7 +53,7 @@ pub struct Solver<'a> {
     pub(crate) system: System,
     pub(crate) tables: Tables,
     /// With steps of which none is among those of the other tables.
-    between: OnceLock<Tables>,
+    beside: OnceLock<Tables>,
 }
 
 impl fmt::Debug for Solver<'_> {
@@ -72,12 +72,12 @@ impl<'a> Solver<'a> {
         let posed = assembly.posed();
         let system = System::new(&posed);
         let tables = Tables::new(&system, Steps::OF_SECOND);
-        Ok(Solver { posed, system, tables, between: OnceLock::new() })
+        Ok(Solver { posed, system, tables, beside: OnceLock::new() })
     }
 
     /// Tables for a run that shares no step, and therefore no error, with those in the other tables.
-    pub(crate) fn between(&self) -> &Tables {
-        self.between.get_or_init(|| Tables::new(&self.system, Steps::HALFWAY))
+    pub(crate) fn beside(&self) -> &Tables {
+        self.beside.get_or_init(|| Tables::new(&self.system, Steps::HALFWAY))
     }
 
     /// As [`run`].

@@ -3,12 +3,11 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::solution::{Outcome, Solution};
-use super::solve::{ANSWER, BESIDE, Impact, Run, SOLUTIONS, Solved, Solver};
+use super::solve::{ANSWER, BESIDE, Impact, Lowered, Run, SOLUTIONS, Solved, Solver};
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
 use crate::assembly::solve::Keep;
-use crate::assembly::system::System;
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use crate::concurrent::both;
 use contact_models::ContactLaw;
@@ -193,12 +192,13 @@ impl Solver {
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution, NoDerivative::Outcome));
         }
-        let coarser = coarser.unwrap_or_else(|| self.beside(impact));
-        let around = Around::new(self, impact, parameters);
+        let lowered = self.lower(impact);
+        let coarser = coarser.unwrap_or_else(|| self.beside(impact, &lowered));
+        let around = Around::new(self, &lowered, parameters);
         let (coarse, found) = both(
             settings.concurrent,
-            || self.along(BESIDE, impact, &around, &coarser),
-            || self.along(ANSWER, impact, &around, &fine),
+            || self.along(BESIDE, impact, &around, &lowered, &coarser),
+            || self.along(ANSWER, impact, &around, &lowered, &fine),
         );
         let (changes, touches) = match found {
             Ok(found) => found,
@@ -220,16 +220,21 @@ impl Solver {
     }
 
     /// Derivatives along one of the solutions.
-    fn along(&self, which: usize, impact: &Impact, around: &Around, run: &Run) -> Result<AllChanges, NoDerivative> {
+    fn along(
+        &self,
+        which: usize,
+        impact: &Impact,
+        around: &Around,
+        Lowered { assembly, system }: &Lowered,
+        run: &Run,
+    ) -> Result<AllChanges, NoDerivative> {
         if run.outcome != Outcome::Rebound {
             return Err(NoDerivative::Outcome);
         }
-        let assembly = posed::assembly(self.modes(), self.moved(), impact.striker, impact.start);
         let posed = assembly.with_laws(vec![impact.law]);
-        let system = System::new(&posed);
         let stretches = &run.record.stretches;
         let expansions = &mut Expansions::new(SOLUTIONS[which].0);
-        let found = tangents(&posed, &system, stretches, (&around.changes, None), expansions)?;
+        let found = tangents(&posed, system, stretches, (&around.changes, None), expansions)?;
         let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
         let pick = |values: &[f64]| {
             let mut all = vec![0.0; self.modes().len()];
@@ -274,18 +279,19 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    fn new(solver: &Solver, impact: &Impact, parameters: &'a [Parameter<'a>]) -> Around<'a> {
+    fn new(solver: &Solver, lowered: &Lowered, parameters: &'a [Parameter<'a>]) -> Around<'a> {
         let pose =
             |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, solver.moved(), striker, start);
-        let assembly = pose(solver.modes(), impact.striker, impact.start);
-        let system = System::new(&assembly.with_laws(vec![impact.law]));
         let of = |by: &'a Parameter<'a>| {
             let near = by.neighbours.each_ref().map(|at| pose(&at.structure.modes, at.striker, at.start));
             let posed: [Posed; 4] = array::from_fn(|i| near[i].with_laws(vec![by.neighbours[i].law]));
             let stencil = Stencil::new(by.offsets);
             let weight = |at: &Posing| posed::weight(at.striker, &at.structure.modes);
             let laws = by.changes_law.then(|| vec![by.neighbours.each_ref().map(|at| at.law)]);
-            (Change::new(&system, posed.each_ref(), laws, stencil), stencil.slope(by.neighbours.each_ref().map(weight)))
+            (
+                Change::new(&lowered.system, posed.each_ref(), laws, stencil),
+                stencil.slope(by.neighbours.each_ref().map(weight)),
+            )
         };
         let (changes, weight) = parameters.iter().map(of).unzip();
         Around { parameters, changes, weight }

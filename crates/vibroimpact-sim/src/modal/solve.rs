@@ -75,9 +75,9 @@ pub(crate) struct Impact<'a> {
 }
 
 /// An impact as an assembly, for all runs of it.
-struct Lowered {
-    assembly: Assembly<()>,
-    system: System,
+pub(crate) struct Lowered {
+    pub assembly: Assembly<()>,
+    pub system: System,
 }
 
 /// One run at one tolerance.
@@ -313,9 +313,8 @@ impl Solver {
     }
 
     /// The coarser solution along which derivatives are computed.
-    pub(crate) fn beside(&self, impact: &Impact) -> Run {
-        let responses = &mut Responses::default();
-        self.run(impact, &self.lower(impact), (BESIDE, responses), SOLUTIONS[BESIDE].1, Keep::Motion)
+    pub(crate) fn beside(&self, impact: &Impact, lowered: &Lowered) -> Run {
+        self.run(impact, lowered, (BESIDE, &mut Responses::default()), SOLUTIONS[BESIDE].1, Keep::Motion)
     }
 
     /// Estimated error of the restitution, from coarser solutions of the same impact and, where it is needed, a further one: `None` if
@@ -375,7 +374,7 @@ impl Solver {
         &self.moved
     }
 
-    fn lower(&self, impact: &Impact) -> Lowered {
+    pub(crate) fn lower(&self, impact: &Impact) -> Lowered {
         let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
         let system = System::new(&assembly.with_laws(Vec::new()));
         Lowered { assembly, system }
