@@ -88,6 +88,14 @@ fn near_returns_of_a_long_motion_lead_to_periodic_ones() {
     }
 }
 
+/// After 80 periods the damper still moves irregularly. That it converges later must not contradict what is said of it then.
+#[test]
+fn a_motion_that_has_not_converged_is_called_chaotic_only_so_far() {
+    let scene = datasets("assemblies/impact-damper.json").display().to_string();
+    let text = stdout(&run(Path::new("."), &["orbit", &scene, "--transient", "40", "--search", "40"]));
+    assert!(text.contains("has converged to no periodic motion") && text.contains("is chaotic so far"), "{text}");
+}
+
 #[test]
 fn a_branch_is_followed_drawn_and_written() {
     let folder = tempfile::tempdir().unwrap();

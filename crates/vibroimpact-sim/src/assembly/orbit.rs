@@ -122,7 +122,8 @@ pub struct Recurrence {
     pub distance: f64,
     /// Whether it repeats itself after so many periods from then on: it has converged to a periodic motion.
     pub has_converged: bool,
-    /// Factor by which nearby motions separate in a period of the loads, on average. Above 1 the motion is chaotic.
+    /// Factor by which nearby motions separate in a period of the loads, on average over some periods after the search. Above 1 the
+    /// motion is chaotic there; it may still converge later.
     pub separation_per_period: f64,
 }
 

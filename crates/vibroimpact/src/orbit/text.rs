@@ -56,7 +56,8 @@ fn advice(recurrence: &Recurrence) -> String {
     }
     let nature = if separation_per_period > CHAOTIC {
         format!(
-            "It is chaotic: nearby motions separate by a factor of {separation_per_period:.2} in each period of the load."
+            "It is chaotic so far: nearby motions separate by a factor of {separation_per_period:.2} in each period of the load. \
+             A motion may be\n  chaotic for long and then converge."
         )
     } else {
         format!(
@@ -66,7 +67,7 @@ fn advice(recurrence: &Recurrence) -> String {
     };
     let periods = counted(u64::from(n), "period", "periods");
     format!(
-        "  The motion from the start converges to no periodic motion; it is nearest to one after {periods}, to {distance:.1e}.\n  \
+        "  The motion from the start has converged to no periodic motion; it is nearest to one after {periods}, to {distance:.1e}.\n  \
          {nature}\n  \
          A longer search (--search), other --periods, or a branch (--over) that begins where a motion is stable may lead to one.\n"
     )
