@@ -106,6 +106,5 @@ impl Solver {
 const HALVINGS: usize = 20;
 
 fn unchanged(problem: &Problem) -> Solution {
-    let rates = problem.modes.iter().map(|mode| mode.rate).collect();
-    problem.solution(Outcome::NoImpact, vec![0.0; problem.coordinates()], rates)
+    problem.solution(Outcome::NoImpact, vec![0.0; problem.coordinates()], &vec![0.0; problem.modes.len()])
 }

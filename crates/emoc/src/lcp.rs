@@ -82,8 +82,8 @@ pub fn newton_impact(problem: &Problem) -> Result<Option<Solution>, InvalidInput
         impulse[i] = *p;
     }
     let outcome = if matrix::dot(&p, &p) > 0.0 { Outcome::Solved } else { Outcome::NoImpact };
-    let rates = problem.struck_rates(&impulse);
-    Ok(Some(problem.solution(outcome, impulse, rates)))
+    let rate_changes = problem.struck_changes(&impulse);
+    Ok(Some(problem.solution(outcome, impulse, &rate_changes)))
 }
 
 /// Dictionary `[ B^-1 | -B^-1 M | -B^-1 1 | B^-1 q ]` of `w - M z - 1 z_0 = q`: columns `0..n` belong to `w`,

@@ -34,7 +34,7 @@ use crate::Coefficients;
 use crate::require::{require, require_positive};
 use invalid_input::InvalidInput;
 
-/// Share of the available energy by which rounding may exceed it.
+/// Share of the energy exchanged by which rounding may exceed what is available.
 const ENERGY_ROUNDING: f64 = 1e-10;
 /// Number of bisections of the share by which demands are lowered.
 const SHARE_HALVINGS: usize = 20;
@@ -107,12 +107,11 @@ impl MovingImpact<'_> {
         let Coefficients { ebar, beta1, .. } = self.coefficients;
         let demanded = [ebar * closing, beta1 * ebar * closing];
         let attained = [0.0, self.outward(&plastic)];
-        let energy = self.energy(&Point { impulse: 0.0, level: 0.0 }) * (1.0 + ENERGY_ROUNDING);
         let attempt = |share: f64| {
             let lowered =
                 |i: usize| demanded[i].min(attained[i].max(attained[i] + share * (demanded[i] - attained[i])));
             let found = self.solve(lowered(0), lowered(1));
-            found.filter(|point| self.energy(point) <= energy)
+            found.filter(|point| self.keeps_energy(point))
         };
         let (best, share) = match attempt(1.0) {
             Some(point) => (point, 1.0),
@@ -169,11 +168,18 @@ impl MovingImpact<'_> {
         self.velocity_m_s + impulse / self.mass_kg
     }
 
-    fn energy(&self, point: &Point) -> f64 {
-        let v = self.velocity(point.impulse);
-        // Without impulse (3) does not allow a mode to change.
-        let modes: f64 = self.modes().map(|(phi, rate)| point.rate(phi, rate)).map(|a| a * a).sum();
-        0.5 * (self.mass_kg * v * v + modes)
+    /// Whether the energy does not grow beyond rounding of what the bodies exchange: a light striker has only a small share of the
+    /// energy of a structure that moves. It is false if numbers overflow.
+    fn keeps_energy(&self, point: &Point) -> bool {
+        let p = point.impulse;
+        let striker = [p * self.velocity_m_s, 0.5 * p * (p / self.mass_kg)];
+        let modes = self.modes().flat_map(|(phi, rate)| {
+            let change = point.change(phi, rate);
+            [change * rate, 0.5 * change * change]
+        });
+        let [gain, size] =
+            striker.into_iter().chain(modes).fold([0.0, 0.0], |[gain, size], e| [gain + e, size + e.abs()]);
+        gain <= ENERGY_ROUNDING * size
     }
 
     /// The left side of (1).
@@ -263,7 +269,12 @@ struct Point {
 impl Point {
     /// The speed (4) of a mode.
     fn rate(&self, phi: f64, rate: f64) -> f64 {
+        rate + self.change(phi, rate)
+    }
+
+    /// Its difference from the speed before the impact.
+    fn change(&self, phi: f64, rate: f64) -> f64 {
         let range = phi.abs() * self.impulse;
-        (-self.level * phi).clamp(rate - range, rate + range)
+        (-self.level * phi - rate).clamp(-range, range)
     }
 }

@@ -187,8 +187,9 @@ impl Problem {
         opening
     }
 
-    /// The state after impulses `impulse` and with modal speeds `rates`.
-    pub(crate) fn solution(&self, outcome: Outcome, impulse: Vec<f64>, rates: Vec<f64>) -> Solution {
+    /// The state after impulses `impulse` and these changes of the modal speeds. With the changes the energy that the bodies exchange
+    /// keeps its digits where the structure has much more.
+    pub(crate) fn solution(&self, outcome: Outcome, impulse: Vec<f64>, rate_changes: &[f64]) -> Solution {
         let d = self.coordinates();
         let mut velocity = self.velocity_m_s.clone();
         let mut energy = 0.0;
@@ -197,8 +198,10 @@ impl Problem {
             energy += impulse[i] * (self.velocity_m_s[i] + 0.5 * change);
             velocity[i] += change;
         }
-        for (mode, rate) in self.modes.iter().zip(&rates) {
-            energy += 0.5 * (rate - mode.rate) * (rate + mode.rate);
+        let mut rates = Vec::with_capacity(self.modes.len());
+        for (mode, change) in self.modes.iter().zip(rate_changes) {
+            energy += change * (mode.rate + 0.5 * change);
+            rates.push(mode.rate + change);
         }
         let opening_m_s = self.opening(&velocity, rates.iter().copied());
         Solution {
@@ -211,9 +214,9 @@ impl Problem {
         }
     }
 
-    /// Modal speeds if the impulses act on the structure instantaneously: `a_k' + sum_j shape_kj (-P_j)`.
-    pub(crate) fn struck_rates(&self, impulse: &[f64]) -> Vec<f64> {
-        self.modes.iter().map(|mode| mode.rate - matrix::dot(&mode.shape, impulse)).collect()
+    /// Changes of the modal speeds if the impulses act on the structure instantaneously: `sum_j shape_kj (-P_j)`.
+    pub(crate) fn struck_changes(&self, impulse: &[f64]) -> Vec<f64> {
+        self.modes.iter().map(|mode| -matrix::dot(&mode.shape, impulse)).collect()
     }
 
     /// `G = W + Phi^T Phi`, the inverse inertia of the contact points with the structure's modes included.

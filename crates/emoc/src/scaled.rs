@@ -3,11 +3,12 @@
 use crate::engine::{Engine, Failure};
 use crate::program::Program;
 use crate::{Friction, Mode, Outcome, Problem, Solution};
+use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 use invalid_input::InvalidInput;
 
-/// Share of the available energy by which a numerical solution may exceed it.
+/// Share of the energy exchanged, or of that available if it is less, by which the energy may grow numerically.
 const ENERGY_ROUNDING: f64 = 1e-10;
 /// Speed, relative to the fastest one, at which a contact may close numerically.
 const CLOSING_ROUNDING: f64 = 1e-9;
@@ -15,8 +16,6 @@ const CLOSING_ROUNDING: f64 = 1e-9;
 const WEDGED: f64 = 1e6;
 /// Share of the impulses between wedged bodies, which cancel, that may be missing at a contact.
 const WEDGED_ROUNDING: f64 = 1e-11;
-/// Mode shapes smaller than this share of the largest response do not count.
-const OUT_OF_REACH: f64 = 1e-8;
 
 /// Impulses and changes of the modal speeds.
 pub(crate) struct Point {
@@ -64,7 +63,7 @@ impl<'a> Scaled<'a> {
         let mut kept = Vec::new();
         let mut modes = Vec::new();
         for (place, mode) in stated.modes.iter().enumerate() {
-            if mode.shape.iter().any(|shape| shape.abs() > OUT_OF_REACH * root) {
+            if mode.shape.iter().any(|shape| shape.abs() / root > 0.0) {
                 kept.push(place);
                 let shape = mode.shape.iter().map(|shape| shape / root).collect();
                 modes.push(Mode { rate: mode.rate / speed * root, shape });
@@ -76,7 +75,6 @@ impl<'a> Scaled<'a> {
             velocity_m_s: stated.velocity_m_s.iter().map(|v| v / speed).collect(),
             modes,
         };
-        // The omitted modes still move the contact points a little, which changes the closing speeds.
         let closing = normals.iter().map(|&i| (-opening[i] / speed).max(0.0)).collect();
         Ok(Some(Scaled { stated, problem, kept, normals, closing, speed, root }))
     }
@@ -97,8 +95,7 @@ impl<'a> Scaled<'a> {
         }
         self.friction_rows(&mut program);
         let impulse = engine.minimise(&program)?.x;
-        let struck = self.problem.struck_rates(&impulse);
-        let rate_changes = struck.iter().zip(&self.problem.modes).map(|(rate, mode)| rate - mode.rate).collect();
+        let rate_changes = self.problem.struck_changes(&impulse);
         // Between wedged bodies the least energy may need an infinite impulse.
         let point = Point { impulse, rate_changes };
         let pressing = point.impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
@@ -113,11 +110,15 @@ impl<'a> Scaled<'a> {
     /// P_1 for many contacts: least energy under the outward constraints, whose demands are lowered to `share`
     /// of the way from `attained` to those stated.
     ///
-    /// Variables: impulses `P`, changes `x_k` of the modal speeds, and `c_k = |a_k'|`.
+    /// Variables: impulses `P`, and in units of the largest shape of each mode, which is what an impulse of 1 changes, the change `x_k`
+    /// of its speed and the change `c_k` of its magnitude `|a_k'|`. All of them are then of the size of the impulses, also if the
+    /// structure is heavy and its modal speeds exceed their changes by many orders of magnitude.
     pub(crate) fn attempt(&self, engine: &mut Engine, attained: &Attained, share: f64) -> Result<Point, Failure> {
         let Problem { contacts, inverse_inertia_per_kg: w, velocity_m_s: v, modes } = &self.problem;
         let (d, n) = (v.len(), modes.len());
         let (x, c) = (d, d + n);
+        let reach = |mode: &Mode| mode.shape.iter().fold(0.0_f64, |m, shape| m.max(shape.abs()));
+        let units: Vec<f64> = modes.iter().map(reach).collect();
         let mut p1 = Program::new(d + 2 * n);
         // Change of energy: P.W P/2 + v.P + sum (a + x)^2/2, half of the sum in c as in Eq. 6.8.
         for i in 0..d {
@@ -127,9 +128,11 @@ impl<'a> Scaled<'a> {
             }
         }
         for (k, mode) in modes.iter().enumerate() {
-            p1.linear(x + k, 0.5 * mode.rate);
-            p1.quadratic(x + k, x + k, 0.5);
-            p1.quadratic(c + k, c + k, 0.5);
+            let unit = units[k];
+            p1.linear(x + k, 0.5 * mode.rate * unit);
+            p1.linear(c + k, 0.5 * mode.rate.abs() * unit);
+            p1.quadratic(x + k, x + k, 0.5 * unit * unit);
+            p1.quadratic(c + k, c + k, 0.5 * unit * unit);
         }
         self.friction_rows(&mut p1);
         let lowered = |demand: f64, had: f64| if demand > had { had + share * (demand - had) } else { demand };
@@ -138,35 +141,40 @@ impl<'a> Scaled<'a> {
             let demand = contact.coefficients.ebar * self.closing[place];
             let after = (0..d).map(|j| (j, w[i * d + j]));
             // Eq. 6.9: g_i + (W P)_i - sum shape x >= ebar u; without approach it prevents interpenetration.
-            let modal = modes.iter().enumerate().map(|(k, mode)| (x + k, -mode.shape[i]));
+            let modal = modes.iter().enumerate().map(|(k, mode)| (x + k, -mode.shape[i] * units[k]));
             p1.at_least(after.clone().chain(modal), lowered(demand, attained.opening[place]) - before[i]);
             // Eq. 6.10, for closing contacts only; a row of zeros keeps the pattern the same for the others.
             let acts = if self.closing[place] > 0.0 { 1.0 } else { 0.0 };
             let beta0 = contact.coefficients.beta0;
-            let modal = modes.iter().enumerate().map(|(k, mode)| (c + k, -acts * beta0 * mode.shape[i].abs()));
+            let modal = modes.iter().enumerate();
+            let modal = modal.map(|(k, mode)| (c + k, -acts * beta0 * mode.shape[i].abs() * units[k]));
             let demand = lowered(contact.coefficients.beta1 * demand, attained.outward[place]);
-            let bound = if acts > 0.0 { demand - v[i] } else { -1.0 };
+            let buzz: f64 = modes.iter().map(|mode| (mode.shape[i] * mode.rate).abs()).sum();
+            let bound = if acts > 0.0 { demand - v[i] + beta0 * buzz } else { -1.0 };
             p1.at_least(after.map(|(j, w)| (j, acts * w)).chain(modal), bound);
         }
         for (k, mode) in modes.iter().enumerate() {
-            p1.at_most([(x + k, 1.0), (c + k, -1.0)], -mode.rate); // 6.11
-            p1.at_most([(x + k, -1.0), (c + k, -1.0)], mode.rate); // 6.12
+            // Beyond what admissible impulses can change a bound has no effect, but would spoil the numbers.
+            let furthest = -2.0 * WEDGED * self.reach(mode, units[k]).map(|(_, reach)| reach).sum::<f64>();
+            let bound = |rate: f64| ((mode.rate.abs() - rate) / units[k]).min(furthest);
+            p1.at_most([(x + k, 1.0), (c + k, -1.0)], bound(mode.rate)); // 6.11
+            p1.at_most([(x + k, -1.0), (c + k, -1.0)], bound(-mode.rate)); // 6.12
             // 6.13: no mode changes by more than the impulses can cause.
-            p1.at_most(self.reach(mode).chain([(x + k, 1.0)]), 0.0);
-            p1.at_most(self.reach(mode).chain([(x + k, -1.0)]), 0.0);
+            p1.at_most(self.reach(mode, units[k]).chain([(x + k, 1.0)]), 0.0);
+            p1.at_most(self.reach(mode, units[k]).chain([(x + k, -1.0)]), 0.0);
         }
         let mut found = engine.minimise(&p1)?.x;
         found.truncate(d + n);
-        let rate_changes = found.split_off(d);
+        let rate_changes = found.split_off(d).iter().zip(&units).map(|(change, unit)| change * unit).collect();
         Ok(Point { impulse: found, rate_changes })
     }
 
-    /// `-(|shape_normal| + mu |shape_tangent|)` for the normal impulse of each contact.
-    fn reach<'b>(&'b self, mode: &'b Mode) -> impl Iterator<Item = (usize, f64)> + 'b {
-        self.normals.iter().zip(&self.problem.contacts).map(|(&i, contact)| {
+    /// `-(|shape_normal| + mu |shape_tangent|)` for the normal impulse of each contact, in this unit of shapes.
+    fn reach<'b>(&'b self, mode: &'b Mode, unit: f64) -> impl Iterator<Item = (usize, f64)> + 'b {
+        self.normals.iter().zip(&self.problem.contacts).map(move |(&i, contact)| {
             let tangents = &mode.shape[i + 1..i + contact.friction.coordinates()];
             let tangent = tangents.iter().map(|shape| shape * shape).sum::<f64>().sqrt();
-            (i, -(mode.shape[i].abs() + contact.friction.coefficient() * tangent))
+            (i, -(mode.shape[i].abs() + contact.friction.coefficient() * tangent) / unit)
         })
     }
 
@@ -208,28 +216,30 @@ impl<'a> Scaled<'a> {
     /// impulses that only cancel each other up to rounding, as between wedged bodies.
     pub(crate) fn admissible(&self, point: &Point) -> bool {
         let solution = self.state(point);
-        let modes: f64 = self.problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
-        solution.energy_change_j <= ENERGY_ROUNDING * (1.0 + modes)
+        let (problem, p) = (&self.problem, &point.impulse);
+        let before_and_after = problem.velocity_m_s.iter().zip(&solution.velocity_m_s);
+        let strikers: f64 =
+            p.iter().zip(before_and_after).map(|(p, (v, after))| p.abs() * (v.abs() + after.abs())).sum();
+        let rates_and_changes = problem.modes.iter().map(|mode| mode.rate).zip(&point.rate_changes);
+        let modes: f64 = rates_and_changes.map(|(rate, change)| change.abs() * (rate.abs() + change.abs())).sum();
+        let available = 1.0 + problem.modes.iter().map(|mode| mode.rate * mode.rate).sum::<f64>();
+        solution.energy_change_j <= ENERGY_ROUNDING * (strikers + modes).min(available)
             && self.normals.iter().all(|&i| solution.opening_m_s[i] >= -CLOSING_ROUNDING)
             && point.impulse.iter().all(|p| p.abs() <= WEDGED)
     }
 
     /// The state at a point, in the units of the program.
     fn state(&self, point: &Point) -> Solution {
-        self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point))
-    }
-
-    fn rates(&self, point: &Point) -> Vec<f64> {
-        self.problem.modes.iter().zip(&point.rate_changes).map(|(mode, change)| mode.rate + change).collect()
+        self.problem.solution(Outcome::Solved, point.impulse.clone(), &point.rate_changes)
     }
 
     /// The point as a solution of the problem as stated.
     pub(crate) fn solution(&self, outcome: Outcome, point: &Point) -> Solution {
-        let mut rates: Vec<f64> = self.stated.modes.iter().map(|mode| mode.rate).collect();
+        let mut rate_changes = vec![0.0; self.stated.modes.len()];
         for (&place, change) in self.kept.iter().zip(&point.rate_changes) {
-            rates[place] += change * self.speed / self.root;
+            rate_changes[place] = change * self.speed / self.root;
         }
         let impulse = point.impulse.iter().map(|p| p * self.speed / self.root / self.root).collect();
-        self.stated.solution(outcome, impulse, rates)
+        self.stated.solution(outcome, impulse, &rate_changes)
     }
 }

@@ -29,7 +29,7 @@ fn case(random: &mut Random) -> (String, [f64; LINE]) {
         alpha1: random.log_range(1e-3, 1e3),
         notional_restitution: random.range(0.0, 1.0),
     };
-    let (mass_kg, velocity_m_s) = (random.log_range(1e-3, 1e1), random.range(-3.0, 0.3));
+    let (mass_kg, velocity_m_s) = (random.log_range(1e-12, 1e1), random.range(-3.0, 0.3));
     let mut text = format!(
         "{:?} {:?} {:?} {:?} {mass_kg:?} {velocity_m_s:?} {n}",
         law.mu0, law.alpha0, law.alpha1, law.notional_restitution

@@ -66,6 +66,33 @@ fn bisection_agrees_with_the_quadratic_program() {
     assert!(solved > 1000 && relaxed > 50 && nothing > 100, "{solved} {relaxed} {nothing}");
 }
 
+/// Only what a light striker exchanges with a heavy structure counts, however much energy the structure has.
+#[test]
+fn a_light_striker_meets_a_structure_that_moves() {
+    let mut random = Random(6);
+    let mut relaxed = 0;
+    for case in 0..1000 {
+        let n = 1 + random.below(6);
+        let phi: Vec<f64> = (0..n).map(|_| random.range(-2.0, 2.0)).collect();
+        let rates: Vec<f64> = (0..n).map(|_| random.range(-1.0, 1.0)).collect();
+        let mass_kg = random.log_range(1e-16, 1e-3);
+        let coefficients = random.coefficients();
+        let impact =
+            MovingImpact { mass_kg, velocity_m_s: random.range(-1.0, 0.3), coefficients, phi: &phi, rates: &rates };
+        let (found, known) = (impact.rebound().unwrap(), Solver::new().solve(&problem(&impact)).unwrap());
+        assert!(known.energy_change_j <= 1e-8 * mass_kg, "{case} {impact:?} {known:?}");
+        let share = match known.outcome {
+            Outcome::Relaxed { share } => share,
+            _ => 1.0,
+        };
+        relaxed += usize::from(share < 1.0);
+        assert!((found.share - share).abs() < 1e-5, "{case} {impact:?} {found:?} {known:?}");
+        let miss = (found.velocity_m_s - known.velocity_m_s[0]).abs();
+        assert!(miss < if share < 1.0 { 1e-3 } else { 1e-8 }, "{case} {miss} {impact:?} {found:?} {known:?}");
+    }
+    assert!(relaxed > 20, "{relaxed}");
+}
+
 #[test]
 fn a_structure_at_rest_gives_the_closed_form() {
     each_random(4, 3000, 0.0, |impact| {
