@@ -410,6 +410,34 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     assert!(bootstrap(&good(), &Settings::default(), &fitted, 1, 0, 0.9).is_err());
 }
 
+/// Neither the units of the coordinates nor a combination that was not observed changes what is known.
+#[test]
+fn information_does_not_depend_on_units() {
+    for unit in [1.0, 1e-9, 1e12] {
+        // readings of a slope and a level at 1, 2 and 4
+        let rows: Vec<f64> = [1.0, 2.0, 4.0].iter().flat_map(|x| [x * unit, 1.0]).collect();
+        let line = Information::of(&rows, 2).unwrap();
+        let sds = line.standard_deviations();
+        assert!((sds[0] * unit - (3.0f64 / 14.0).sqrt()).abs() < 1e-12 && (sds[1] - 1.5f64.sqrt()).abs() < 1e-12);
+        assert!((line.covariance().unwrap()[1] * unit + 0.5).abs() < 1e-12);
+        let at_two = line.of_prediction(&[2.0 * unit, 1.0]);
+        assert!((at_two * at_two - 5.0 / 14.0).abs() < 1e-12, "{at_two}");
+        let apart = Information::of(&[unit, 0.0, 0.0, 1.0], 2).unwrap();
+        assert_eq!(apart.standard_deviations(), [unit.recip(), 1.0]);
+    }
+    // of the level only the sum of two parts was read
+    for k in 1..100 {
+        let (a, b) = (0.1 * f64::from(k), 0.37 * f64::from(k));
+        let readings = Information::of(&[1.0, a, b, 2.0, a, b, 4.0, a, b], 3).unwrap();
+        let slope = readings.about(&[0]).unwrap().standard_deviations()[0];
+        assert!((slope - (3.0f64 / 14.0).sqrt()).abs() < 1e-12, "{k} {slope}");
+        let second = readings.of_prediction(&[2.0, a, b]);
+        assert!((second * second - 5.0 / 14.0).abs() < 1e-12, "{k} {second}");
+    }
+    let sure = Information::of(&[1.0, 1.0], 2).unwrap().with_prior(&[1e-300, 0.0]);
+    assert!((sure.standard_deviations()[1] - 1.0).abs() < 1e-12, "{sure:?}");
+}
+
 #[test]
 fn the_report_of_residuals_is_right() {
     let report = Residuals::of(&[-3.0, 1.0, 2.0, 0.0]);
