@@ -2,6 +2,9 @@
 
 use crate::incomplete::{lower_beta, upper_gamma};
 
+/// Degrees of freedom from which on an expansion about the normal distribution is exact to rounding.
+const MANY: f64 = 1e4;
+
 /// Probability that a chi-square variable with `freedom` degrees of freedom exceeds `value`, to about 1e-9; 1 if `freedom` is 0.
 ///
 /// ```
@@ -35,7 +38,7 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
 }
 
 /// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1, otherwise NaN):
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. The degrees of freedom are at least 1 and need not be an integer. `None`
+/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`, and for many degrees of freedom an expansion about the normal variable. The degrees of freedom are at least 1 and need not be an integer. `None`
 /// stands for a known standard deviation, that is the normal variable.
 ///
 /// ```
@@ -48,8 +51,16 @@ pub fn two_sided_quantile(level: f64, freedom: Option<f64>) -> f64 {
         0.0..1.0 => {}
         _ => return f64::NAN,
     }
-    let Some(freedom) = freedom else { return std::f64::consts::SQRT_2 * puruspe::inverf(level) };
+    let z = std::f64::consts::SQRT_2 * puruspe::inverf(level);
+    let Some(freedom) = freedom else { return z };
     let f = freedom.max(1.0);
+    if f >= MANY {
+        // Abramowitz and Stegun 26.7.5
+        let w = z * z;
+        let orders =
+            [(w + 1.0) / 4.0, ((5.0 * w + 16.0) * w + 3.0) / 96.0, (((3.0 * w + 19.0) * w + 17.0) * w - 15.0) / 384.0];
+        return z * orders.iter().rev().fold(1.0, |sum, order| (sum - 1.0 + order) / f + 1.0);
+    }
     let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
     (f * (1.0 - x) / x).sqrt()
 }
@@ -99,6 +110,14 @@ mod tests {
         assert!(chi_square_tail(f64::NAN, 300).is_nan() && fisher_tail(f64::NAN, 3, 5).is_nan());
     }
 
+    /// Degrees of freedom, and by how much the quantile of 95 % exceeds the normal one, by 40 digits.
+    const QUANTILES: [(f64, f64); 4] = [
+        (1e4, 2.372_553_505_720_22e-4),
+        (3e4, 7.907_884_388_085_49e-5),
+        (1e6, 2.372_274_052_799_73e-6),
+        (1e9, 2.372_271_233_121_06e-9),
+    ];
+
     #[test]
     fn student_quantiles_are_those_of_the_tables() {
         // Exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables.
@@ -107,6 +126,12 @@ mod tests {
             [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
         for (freedom, t) in exact {
             assert!((two_sided_quantile(level, Some(f64::from(freedom))) / t - 1.0).abs() < 1e-8, "{freedom}");
+        }
+        let normal = two_sided_quantile(level, None);
+        assert_eq!(two_sided_quantile(level, Some(f64::INFINITY)), normal);
+        for (freedom, more) in QUANTILES {
+            let found = two_sided_quantile(level, Some(freedom)) - normal;
+            assert!((found - more).abs() < 1e-14, "{freedom}: {found} {more}");
         }
         for (freedom, t) in [(10, 2.228138852), (30, 2.042272456), (100, 1.983971519)] {
             assert!((two_sided_quantile(level, Some(f64::from(freedom))) - t).abs() < 1e-7, "{freedom}");
