@@ -200,5 +200,5 @@ fn simplex_search(
     };
     let steps: Vec<f64> = objective.problem.parameters.iter().zip(from).map(step).collect();
     let mut value = |u: &[f64]| objective.sum_of_squares(u, buffer);
-    simplex::minimise(&mut value, from, &steps, settings.tolerance, settings.max_evaluations)
+    simplex::minimise(&mut value, from, &steps, &objective.units(), settings.tolerance, settings.max_evaluations)
 }

@@ -14,7 +14,8 @@
 //! - **Several starts.** The starting points are that of the parameters and then Halton's sequence over their search intervals
 //!   in `u`, which covers them evenly without random numbers. The end of each start is part of the [`Fit`].
 //! - **Smooth residuals.** The method is that of Levenberg and Marquardt, from the crate `levenberg-marquardt` (a port of
-//!   MINPACK). The Jacobian is given or comes from central differences with steps of `cbrt(eps) max(1, |u|)`.
+//!   MINPACK). The Jacobian is given or comes from central differences with steps of `cbrt(eps) max(1, |u|)`; for a free parameter
+//!   whose search interval is shorter than 1, its length takes the place of the 1.
 //! - **Residuals with kinks.** If `r` has kinks, as with a maximum in the model, a gradient method can end on a kink that is
 //!   not a minimum. The simplex method of Nelder and Mead, restarted until it gains nothing, continues from the best point
 //!   ([`Method::Both`], the default).

@@ -1,5 +1,6 @@
 //! The residuals as functions of the unrestricted coordinates `u`.
 
+use crate::parameter::Parameter;
 use crate::problem::Problem;
 use std::cell::Cell;
 
@@ -19,6 +20,11 @@ impl<'a> Objective<'a> {
     pub(crate) fn new(problem: &'a Problem<'a>, weights: Option<&[f64]>) -> Objective<'a> {
         let root_weights = weights.map(|weights| weights.iter().map(|w| w.sqrt()).collect());
         Objective { problem, root_weights, evaluations: Cell::new(0), jacobians: Cell::new(0) }
+    }
+
+    /// Size of a change of each coordinate that matters.
+    pub(crate) fn units(&self) -> Vec<f64> {
+        self.problem.parameters.iter().map(Parameter::unit).collect()
     }
 
     pub(crate) fn parameters(&self, u: &[f64]) -> Vec<f64> {
@@ -82,8 +88,8 @@ impl<'a> Objective<'a> {
         let n = u.len();
         let mut shifted = u.to_vec();
         let (mut above, mut below) = (vec![0.0; self.problem.count], vec![0.0; self.problem.count]);
-        for j in 0..n {
-            let step = f64::EPSILON.cbrt() * u[j].abs().max(1.0);
+        for (j, parameter) in self.problem.parameters.iter().enumerate() {
+            let step = f64::EPSILON.cbrt() * u[j].abs().max(parameter.unit());
             shifted[j] = u[j] + step;
             self.residuals(&shifted, &mut above);
             shifted[j] = u[j] - step;

@@ -33,7 +33,7 @@ pub struct Parameter {
     /// Allowed range.
     pub range: Range,
     /// Interval `(low, high)`, within the range, from which further starting points are taken; its length in `u`
-    /// also sets the size of the first steps of the derivative-free method.
+    /// also sets the size of the first steps of the derivative-free method, and that of differences if it is below 1.
     pub search: (f64, f64),
 }
 
@@ -99,6 +99,12 @@ impl Parameter {
             Range::Positive => clamped.exp(),
             Range::Between { low, high } => low + (high - low) / (1.0 + (-clamped).exp()),
         }
+    }
+
+    /// Size of a change of `u` that matters, where `u` itself is not larger: 1, or less for a free parameter with a short search interval.
+    pub(crate) fn unit(&self) -> f64 {
+        let length = self.search.1 - self.search.0;
+        if self.range == Range::Free && length > 0.0 { length.min(1.0) } else { 1.0 }
     }
 
     /// `dp/du` at a parameter `p`.

@@ -230,7 +230,14 @@ impl Walk<'_> {
             best = lower(best, tried(gradient_method::minimise(&objective, &start, &settings).0));
             if thorough {
                 let steps: Vec<f64> = without(along).iter().map(|rate| width.abs() * rate.abs().max(1.0)).collect();
-                let found = simplex::minimise(&mut sum, &start, &steps, settings.tolerance, settings.max_evaluations);
+                let found = simplex::minimise(
+                    &mut sum,
+                    &start,
+                    &steps,
+                    &objective.units(),
+                    settings.tolerance,
+                    settings.max_evaluations,
+                );
                 best = lower(best, (found.value, found.u));
             }
         }

@@ -14,11 +14,13 @@ pub(crate) struct Found {
 
 type Vertex = (Vec<f64>, f64);
 
-/// Minimises `f` from `start` with first steps `steps`. The search avoids infinite values of `f`.
+/// Minimises `f` from `start` with first steps `steps`, to the tolerance times the coordinates, or times their `units` if these are larger.
+/// The search avoids infinite values of `f`.
 pub(crate) fn minimise(
     f: &mut dyn FnMut(&[f64]) -> f64,
     start: &[f64],
     steps: &[f64],
+    units: &[f64],
     tolerance: f64,
     max_evaluations: usize,
 ) -> Found {
@@ -28,7 +30,7 @@ pub(crate) fn minimise(
     loop {
         let before = best.1;
         let converged;
-        (best, converged) = run(f, best, steps, shrink, tolerance, &mut left);
+        (best, converged) = run(f, best, (steps, units), shrink, tolerance, &mut left);
         let gained = before - best.1 > tolerance.sqrt() * before.abs();
         if !converged || !gained {
             return Found { u: best.0, value: best.1, converged };
@@ -40,7 +42,7 @@ pub(crate) fn minimise(
 fn run(
     f: &mut dyn FnMut(&[f64]) -> f64,
     first: Vertex,
-    steps: &[f64],
+    (steps, units): (&[f64], &[f64]),
     shrink: f64,
     tolerance: f64,
     left: &mut usize,
@@ -61,7 +63,7 @@ fn run(
     *left = left.saturating_sub(n);
     while *left > 0 {
         vertices.sort_by(|a, b| a.1.total_cmp(&b.1));
-        if is_small(&vertices, tolerance) {
+        if is_small(&vertices, units, tolerance) {
             return (vertices.swap_remove(0), true);
         }
         let worst = vertices[n].1;
@@ -107,9 +109,9 @@ fn run(
 /// Whether all vertices agree: in position to `tolerance`, or in position to its square root and in value to `tolerance` (where values
 /// are flat to rounding).
 /// A search that ends at a kink meets the first condition, one at a smooth minimum either.
-fn is_small(vertices: &[Vertex], tolerance: f64) -> bool {
+fn is_small(vertices: &[Vertex], units: &[f64], tolerance: f64) -> bool {
     let (best, worst) = (&vertices[0], &vertices[vertices.len() - 1]);
-    let place = vertices.iter().flat_map(|vertex| vertex.0.iter().zip(&best.0));
-    let extent = place.fold(0.0, |m: f64, (x, b)| m.max((x - b).abs() / b.abs().max(1.0)));
+    let place = vertices.iter().flat_map(|vertex| vertex.0.iter().zip(&best.0).zip(units));
+    let extent = place.fold(0.0, |m: f64, ((x, b), unit)| m.max((x - b).abs() / b.abs().max(*unit)));
     extent <= tolerance || (extent <= tolerance.sqrt() && worst.1 - best.1 <= tolerance * best.1.abs())
 }

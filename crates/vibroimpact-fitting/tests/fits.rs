@@ -410,6 +410,29 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     assert!(bootstrap(&good(), &Settings::default(), &fitted, 1, 0, 0.9).is_err());
 }
 
+/// Free parameters in SI units are often small.
+#[test]
+fn a_free_parameter_may_be_small() {
+    let fitted = |scale: f64| {
+        let model = |p: f64, i: usize| (p / scale * 0.1 * i as f64).exp();
+        let residuals = |p: &[f64], r: &mut [f64]| {
+            for (i, r) in r.iter_mut().enumerate() {
+                *r = model(p[0], i) - model(3.0 * scale, i) - [1e-3, -1e-3][i % 2];
+            }
+        };
+        let parameters = vec![Parameter::free("rate", 2.9 * scale, (2.0 * scale, 4.0 * scale))];
+        let problem = Problem { parameters, count: 20, residuals: &residuals, jacobian: None };
+        let found = fit(&problem, &Settings::default()).unwrap();
+        let interval = found.intervals(0.95).unwrap().unwrap()[0];
+        [found.parameters[0], interval.low, interval.high].map(|value| value / scale)
+    };
+    for scale in [1e-3, 1e-6, 1e-12] {
+        for (small, one) in fitted(scale).into_iter().zip(fitted(1.0)) {
+            assert!((small - one).abs() < 1e-9, "{scale}: {small} {one}");
+        }
+    }
+}
+
 /// Neither the units of the coordinates nor a combination that was not observed changes what is known.
 #[test]
 fn information_does_not_depend_on_units() {
