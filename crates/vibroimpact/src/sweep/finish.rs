@@ -62,10 +62,15 @@ pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bo
     Ok(draws.enough())
 }
 
-/// The summary of a finished folder.
-pub(super) fn summary(folder: &Folder) -> Result<Tally, SweepError> {
-    let path = folder.path().join(SUMMARY);
-    read_json(&path)?.ok_or_else(|| SweepError::Refused(format!("{} is missing", path.display())))
+/// The summary of a finished folder. If it cannot be read, or another file that is made from the rows is missing, they are made again.
+pub(super) fn summary(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<Tally, SweepError> {
+    let path = folder.path();
+    let made = [TABLE, "report.html", "report.md"].into_iter().chain(sweep.uncertain.as_ref().map(|_| DISTRIBUTION));
+    let is_whole = part != Part::WHOLE || made.into_iter().all(|name| path.join(name).is_file());
+    match read_json(&path.join(SUMMARY)) {
+        Ok(Some(tally)) if is_whole => Ok(tally),
+        _ => finish(sweep, part, folder),
+    }
 }
 
 fn close(folder: &mut Folder, tally: &Tally) -> Result<(), SweepError> {

@@ -99,22 +99,23 @@ impl Folder {
             write_durably(&path.join(RECORD), &json(&record)?)?;
         }
         let file = path.join(RESULTS);
-        let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&file);
-        let results = opened.map_err(SweepError::io(&file))?;
-        let mut folder = match read_json::<Progress>(&path.join(PROGRESS))? {
-            Some(progress) => Folder { path: path.to_owned(), results, progress, _lock: lock },
-            None => {
-                let progress = Progress { chunks: 0, bytes: 0, crc32: 0, finished: false };
-                let mut folder = Folder { path: path.to_owned(), results, progress, _lock: lock };
-                folder.cut()?;
-                folder.append(0, &row::header(sweep))?;
-                folder
+        let begun = read_json::<Progress>(&path.join(PROGRESS))?;
+        let is_new = begun.is_none();
+        let opened = OpenOptions::new().read(true).write(true).create(is_new).truncate(false).open(&file);
+        let results = opened.map_err(|source| match source.kind() {
+            io::ErrorKind::NotFound => {
+                SweepError::Refused(format!("{} is missing; remove the folder to begin anew", file.display()))
             }
-        };
-        if !folder.progress.finished {
-            folder.check()?;
+            _ => SweepError::Io { path: file, source },
+        })?;
+        let progress = begun.unwrap_or(Progress { chunks: 0, bytes: 0, crc32: 0, finished: false });
+        let mut folder = Folder { path: path.to_owned(), results, progress, _lock: lock };
+        if is_new {
             folder.cut()?;
+            folder.append(0, &row::header(sweep))?;
         }
+        folder.check()?;
+        folder.cut()?;
         Ok(folder)
     }
 
@@ -136,11 +137,13 @@ impl Folder {
         write_durably(&self.path.join(PROGRESS), &json(&self.progress)?)
     }
 
-    /// Checks that the beginning of the results agrees with the record.
+    /// Checks that the beginning of the results agrees with the record, and that nothing follows it in a finished folder.
     fn check(&mut self) -> Result<(), SweepError> {
         let file = self.path.join(RESULTS);
-        if checksum(&mut self.results, self.progress.bytes).map_err(SweepError::io(&file))? == Some(self.progress.crc32)
-        {
+        let bytes = self.progress.bytes;
+        let sum = checksum(&mut self.results, bytes).map_err(SweepError::io(&file))?;
+        let longer = self.results.metadata().map_err(SweepError::io(&file))?.len() > bytes;
+        if sum == Some(self.progress.crc32) && !(self.progress.finished && longer) {
             return Ok(());
         }
         let text =
@@ -246,12 +249,12 @@ pub(super) fn json(value: &impl Serialize) -> Result<Vec<u8>, SweepError> {
 
 /// Reads a JSON file that this program wrote; `None` if there is none.
 pub(super) fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<Option<T>, SweepError> {
-    let text = match fs::read_to_string(path) {
+    let text = match fs::read(path) {
         Err(fault) if fault.kind() == io::ErrorKind::NotFound => return Ok(None),
         text => text.map_err(SweepError::io(path))?,
     };
     let damaged = |fault| SweepError::Refused(format!("{} cannot be read: {fault}", path.display()));
-    serde_json::from_str(&text).map(Some).map_err(damaged)
+    serde_json::from_slice(&text).map(Some).map_err(damaged)
 }
 
 /// Replaces a file atomically; afterwards the new file is on the disk, whatever happens to the machine.

@@ -60,7 +60,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
 
     let mut folder = Folder::open(out, &sweep, Part::WHOLE)?;
     if folder.progress().finished {
-        return finish::summary(&folder);
+        return finish::summary(&sweep, Part::WHOLE, &mut folder);
     }
     for (number, (path, part)) in &found {
         let chunks = Part { number: *number, of }.chunks(sweep.chunks());

@@ -101,7 +101,7 @@ pub fn run(
     let mut folder = Folder::open(path, sweep, part)?;
     tell(Status::of(sweep, part, &folder));
     if folder.progress().finished {
-        return finish::summary(&folder);
+        return finish::summary(sweep, part, &mut folder);
     }
     for until in sweep.stages(part) {
         // a finished stage was not sufficient, or is checked again

@@ -65,7 +65,7 @@ pub fn run(
     let (sweep, mut folder) = begun?;
     tell(Status::of(&sweep, part, &folder));
     if folder.progress().finished {
-        return finish::summary(&folder).map(Some);
+        return finish::summary(&sweep, part, &mut folder).map(Some);
     }
     lead(&world, &sweep, part, &mut folder, stop, tell)?;
     finish::finish(&sweep, part, &mut folder).map(Some)

@@ -78,6 +78,39 @@ fn a_finished_sweep_is_not_computed_again() {
     assert_eq!(before, files(&bench.path("out")));
 }
 
+/// A finished sweep whose rows have changed is not said to be complete. The files that are made from the rows are made again.
+#[test]
+fn a_finished_folder_is_checked_and_completed() {
+    let bench = Bench::new(&super::sweep());
+    let arguments = ["sweep", "sweep.json", "--out", "out", "--quiet"];
+    bench.succeeds(&arguments);
+    let before = files(&bench.path("out"));
+    for name in ["results.parquet", "summary.json", "report.html", "report.md"] {
+        fs::remove_file(bench.path("out").join(name)).unwrap();
+        bench.succeeds(&arguments);
+        assert_eq!(before, files(&bench.path("out")), "{name}");
+    }
+    fs::write(bench.path("out/summary.json"), "{").unwrap();
+    bench.succeeds(&arguments);
+    assert_eq!(before, files(&bench.path("out")));
+
+    let rows = bench.read("out/results.csv");
+    for changed in [&rows[..rows.len() / 2], &[], &[&rows[..], b"1,2,3\n"].concat()] {
+        fs::write(bench.path("out/results.csv"), changed).unwrap();
+        let told = bench.refuses(&arguments);
+        assert!(told.contains("was changed after this program wrote it"), "{told}");
+    }
+    fs::remove_file(bench.path("out/results.csv")).unwrap();
+    let told = bench.refuses(&arguments);
+    assert!(told.contains("results.csv is missing; remove the folder to begin anew"), "{told}");
+    assert!(!bench.path("out/results.csv").exists());
+    for bytes in [&b""[..], &b"\xff\xfe"[..]] {
+        fs::write(bench.path("out/progress.json"), bytes).unwrap();
+        let told = bench.refuses(&arguments);
+        assert!(told.contains("progress.json cannot be read"), "{told}");
+    }
+}
+
 #[test]
 fn another_sweep_in_the_same_folder_is_refused() {
     let bench = Bench::new(&super::sweep());
