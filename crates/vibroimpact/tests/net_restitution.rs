@@ -221,6 +221,27 @@ fn data_that_determine_nothing_still_give_a_result() {
 }
 
 #[test]
+fn a_parameter_without_influence_is_not_determined() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.json"), PINNED).unwrap();
+    let fit = |masses: &[f64]| -> Value {
+        let mut text = "mass_kg,location_m,restitution\n".to_owned();
+        for (mass, place) in masses.iter().flat_map(|mass| [0.13, 0.21, 0.34, 0.48].map(|place| (mass, place))) {
+            text += &format!("{mass:?},{place:?},{:?}\n", law([0.7, 3.0, 0.2], *mass, place, 50)[0]);
+        }
+        fs::write(folder.path().join("data.csv"), text).unwrap();
+        let arguments = ["fit", "data.csv", "--scene", "scene.json", "--json"];
+        serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap()
+    };
+    // light balls rebound by the first term of the maximum alone
+    let light = fit(&[0.001, 0.002]);
+    assert_eq!((&light["undetermined"], &light["converged"]), (&json!(["alpha0", "alpha1"]), &json!(false)), "{light}");
+    assert!((number(&light, "mu0") / 0.7 - 1.0).abs() < 1e-5 && light["intervals"].is_null(), "{light}");
+    let both = fit(&[0.001, 0.5]);
+    assert_eq!((&both["undetermined"], &both["converged"]), (&json!([]), &json!(true)), "{both}");
+}
+
+#[test]
 fn emoc_states_the_source_of_its_parameters_and_that_compare_has_another_law() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), PINNED).unwrap();

@@ -1,7 +1,7 @@
 //! The three parameters of the law from observed restitutions.
 
 use emoc::{Impact, Parameters};
-use fitting::{Fit, FitError, Outcome, Parameter, Problem, Settings};
+use fitting::{Fit, FitError, Information, Outcome, Parameter, Problem, Settings};
 use invalid_input::InvalidInput;
 use serde::Serialize;
 
@@ -77,6 +77,19 @@ impl Observations {
         })
     }
 
+    /// Whether the observations contain information about each of the three parameters, if the others are unknown too.
+    fn determine(&self, parameters: &[f64]) -> [bool; 3] {
+        let mut rows = vec![0.0; 3 * self.count()];
+        self.jacobian(parameters, &mut rows);
+        // by the logarithms of the parameters
+        for (entry, parameter) in rows.iter_mut().zip(parameters.iter().cycle()) {
+            *entry *= parameter;
+        }
+        let sds =
+            Information::of(&rows, 3).map_or_else(|_| Vec::new(), |information| information.standard_deviations());
+        [0, 1, 2].map(|k| sds.get(k).is_some_and(|sd| sd.is_finite()))
+    }
+
     /// Fits the three parameters.
     ///
     /// # Errors
@@ -117,8 +130,8 @@ pub struct FitSummary {
     /// Whether the search ended at a minimum that depends on all three parameters, and not at its limit or where the sum of squares
     /// no longer changes.
     pub converged: bool,
-    /// The names of the parameters that ended below 1e-6 or above 1e6, where the law no longer depends on them: the
-    /// observations do not determine them, and their values mean "very small" or "very large".
+    /// The names of the parameters that the observations do not determine. Those below 1e-6 or above 1e6 are only known to be very small
+    /// or very large; on the others the restitutions of these impacts do not depend, alone or in some combination.
     pub undetermined: Vec<&'static str>,
 }
 
@@ -145,9 +158,12 @@ impl FitSummary {
         }
         let fit = observations.fit().map_err(|error| fault(format!("such as can be fitted ({error})")))?;
         let [mu0, alpha0, alpha1] = [0, 1, 2].map(|k| fit.parameters.get(k).copied().unwrap_or(f64::NAN));
-        let named = [("mu0", mu0), ("alpha0", alpha0), ("alpha1", alpha1)];
-        let undetermined: Vec<&str> =
-            named.iter().filter(|(_, value)| !DETERMINED.contains(value)).map(|(name, _)| *name).collect();
+        let known = observations.determine(&fit.parameters);
+        let named = [("mu0", mu0), ("alpha0", alpha0), ("alpha1", alpha1)].into_iter().zip(known);
+        let undetermined: Vec<&str> = named
+            .filter(|((_, value), known)| !known || !DETERMINED.contains(value))
+            .map(|((name, _), _)| name)
+            .collect();
         let intervals = fit.intervals(LEVEL).ok().flatten().filter(|_| undetermined.is_empty());
         let ends = |k: usize| intervals.as_ref().and_then(|all| all.get(k)).map(|found| [found.low, found.high]);
         Ok(FitSummary {
