@@ -21,6 +21,9 @@ use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettings};
 const TOLERANCE: f64 = 1e-11;
 /// Diagonal shift that makes the equations factorable for any estimate; iterative refinement removes its effect.
 const SHIFT: f64 = 1e-8;
+/// Terms below this share of the largest one are its rounding. In degenerate solutions the exact values are zero, and equations among
+/// them have no other terms.
+const ROUNDING: f64 = 1e-14;
 /// Largest number of corrections of the estimate.
 const CORRECTIONS: usize = 30;
 const REFINEMENTS: usize = 30;
@@ -55,18 +58,21 @@ pub(crate) fn minimise(program: &Program, guess: &[bool]) -> Option<Proven> {
 }
 
 /// Rows outside the active set that are violated, relative to their largest term, and rows inside it with a negative
-/// multiplier, relative to the largest multiplier.
+/// multiplier, relative to the largest multiplier. Rounding of the largest numbers does not count.
 fn wrong_rows(program: &Program, active: &[bool], places: &[usize], x: &[f64], lambda: &[f64]) -> Vec<(usize, f64)> {
+    let largest_of = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |m, number| m.max(number.abs()));
     let mut excess: Vec<f64> = program.bounds.iter().map(|bound| -bound).collect();
-    let mut size: Vec<f64> = program.bounds.iter().map(|bound| bound.abs()).collect();
+    let mut size: Vec<f64> = vec![0.0; excess.len()];
     for &(row, column, a) in &program.rows {
         excess[row] += a * x[column];
         size[row] = f64::max(size[row], (a * x[column]).abs());
     }
-    let largest = lambda.iter().fold(TOLERANCE, |m, l| m.max(l.abs()));
-    let violated = (0..active.len()).filter(|&row| !active[row]);
-    let violated = violated.map(|row| (row, excess[row] / size[row].max(TOLERANCE)));
-    let pulling = places.iter().zip(lambda).map(|(&row, l)| (row, -l / largest));
+    let rounding = ROUNDING * largest_of(&size);
+    let beyond = |row: usize| excess[row] / size[row].max(program.bounds[row].abs());
+    let violated = (0..active.len()).filter(|&row| !active[row] && excess[row] > rounding);
+    let violated = violated.map(|row| (row, beyond(row)));
+    let (largest, rounding) = (largest_of(lambda), ROUNDING * largest_of(&program.linear));
+    let pulling = places.iter().zip(lambda).filter(|&(_, l)| -l > rounding).map(|(&row, l)| (row, -l / largest));
     violated.chain(pulling).filter(|&(_, by)| by > TOLERANCE).collect()
 }
 
@@ -92,7 +98,7 @@ fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
     let mut solution = vec![0.0; size];
     let mut residual = right.clone();
     let mut best = f64::INFINITY;
-    for _ in 0..REFINEMENTS {
+    for refinement in 0..REFINEMENTS {
         factor.solve(&mut residual);
         let trial: Vec<f64> = solution.iter().zip(&residual).map(|(x, dx)| x + dx).collect();
         // Backward error: the residual of each equation over its largest term.
@@ -106,9 +112,11 @@ fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
                 terms[j] = terms[j].max((a * trial[i]).abs());
             }
         }
-        let ratios = residual.iter().zip(&terms).map(|(r, t)| if *t > 0.0 { r.abs() / t } else { 0.0 });
+        let rounding = ROUNDING * terms.iter().fold(0.0_f64, |m, t| m.max(*t));
+        let ratios = residual.iter().zip(&terms).map(|(r, t)| if *t > rounding { r.abs() / t } else { 0.0 });
         let error = ratios.fold(0.0, |m: f64, x| if x > m || x.is_nan() { x } else { m });
-        if error >= best || error.is_nan() {
+        // The first correction takes terms that should be zero down to rounding, which does not show in the error yet.
+        if (error >= best && refinement > 1) || error.is_nan() {
             break;
         }
         (best, solution) = (error, trial);
