@@ -1,6 +1,7 @@
 //! Evaluates a law along a prescribed motion.
 
 use crate::quadrature::between_events;
+use crate::range::LARGEST;
 use crate::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use invalid_input::InvalidInput;
 
@@ -78,7 +79,7 @@ impl State {
 /// as a power 3/2.
 ///
 /// # Errors
-/// Times that are not finite or do not increase, or a motion that is not finite.
+/// Times that are not finite or do not increase, or a motion that is not within 1e30 of zero, the range of the laws.
 ///
 /// ```
 /// use contact_models::{LinearSpring, trace};
@@ -106,8 +107,9 @@ pub fn trace(
         let increases = end.is_finite() && previous.is_none_or(|t| t < end);
         InvalidInput::unless(increases, "times_s", end, "finite and greater than the time before")?;
         let (xi, rate) = motion(end);
-        InvalidInput::unless(xi.is_finite(), "compression_m", xi, "finite at every time")?;
-        InvalidInput::unless(rate.is_finite(), "rate_m_s", rate, "finite at every time")?;
+        for (field, value) in [("compression_m", xi), ("rate_m_s", rate)] {
+            InvalidInput::unless(value.abs() <= LARGEST, field, value, "a number from -1e30 to 1e30 at every time")?;
+        }
         let mut start = previous.unwrap_or(end);
         for _ in 0..MOST_EVENTS {
             let met = first_met(&state.boundaries(law), start, end, &motion);

@@ -163,6 +163,7 @@ fn motions_that_cannot_be_followed() {
     assert_eq!(field(trace(&law, &[0.0, f64::NAN], |_| (0.0, 0.0))), "times_s");
     assert_eq!(field(trace(&law, &[0.0, 1.0], |t| (t / 0.0, 0.0))), "compression_m");
     assert_eq!(field(trace(&law, &[0.0, 1.0], |_| (0.0, f64::INFINITY))), "rate_m_s");
+    assert_eq!(field(trace(&law, &[0.0, 1.0], |t| (1e300 * t, 1.0))), "compression_m");
     assert!(trace(&law, &[], |_| (0.0, 0.0)).unwrap().is_empty());
     // A rate that is not that of the compression gives a meaningless result, but ends.
     let thornton = Thornton::new(1.0, 1.0, 0.1).unwrap();
