@@ -219,3 +219,14 @@ fn the_shortest_interval_ends() {
         }
     }
 }
+
+/// Steps are shared by ratios of lengths, which do not overflow.
+#[test]
+fn the_longest_interval_ends() {
+    for method in every_method(20) {
+        let problem = Volterra::scalar(|_| 1.0, |_, y| y, &[(0.5, 0.0)]);
+        if let Ok(solution) = problem.solve(&method, f64::MAX) {
+            assert!(solution.values().iter().all(|value| value.is_finite()), "{method}");
+        }
+    }
+}

@@ -51,7 +51,7 @@ pub(crate) fn run(
     let mut counts = Counts::default();
     let mut stop = Stop::EndReached;
     for segment in system.segments.clone() {
-        let share = settings.steps as f64 * segment.length() / t_end;
+        let share = settings.steps as f64 * (segment.length() / t_end);
         let least = if system.segments.len() == 1 { 1 } else { 8 };
         let steps = (share.round() as usize).max(least);
         let march = March::new(&mut system, &mut recorder, &past, scheme, segment, steps);

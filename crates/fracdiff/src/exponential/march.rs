@@ -32,7 +32,7 @@ impl Mesh {
         InvalidInput::unless((1.0..=8.0).contains(&grading), "grading", grading, "a number from 1 to 8")?;
         let total: f64 = segments.iter().map(Segment::length).sum();
         let least = if segments.len() == 1 { 1 } else { 8 };
-        let share = |s: &Segment| ((steps as f64 * s.length() / total).round() as usize).max(least);
+        let share = |s: &Segment| ((steps as f64 * (s.length() / total)).round() as usize).max(least);
         let segments: Vec<_> = segments.iter().map(|s| (*s, share(s))).collect();
         Ok(Mesh { segments, grading })
     }
