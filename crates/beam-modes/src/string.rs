@@ -105,7 +105,8 @@ impl TautString {
         if x == 0.0 || rest == 0.0 {
             return Ok(0.0);
         }
-        let lambda = (self.tension_n / self.flexural_rigidity_n_m2).sqrt();
+        // without its sign a rigidity of -0 is 0
+        let lambda = (self.tension_n / self.flexural_rigidity_n_m2.abs()).sqrt();
         let (p, q) = (lambda * x, lambda * rest);
         if p.min(q) > 1e8 {
             return Ok(x / self.tension_n * (rest / self.length_m)); // Stiffness below rounding.

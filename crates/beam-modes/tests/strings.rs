@@ -60,6 +60,11 @@ fn a_string_of_low_tension_is_a_beam() {
 }
 
 #[test]
+fn a_rigidity_of_minus_zero_is_none() {
+    assert_eq!(c4(-0.0).static_compliance(0.2).unwrap(), c4(0.0).static_compliance(0.2).unwrap());
+}
+
+#[test]
 fn input_out_of_range_is_named() {
     let field = |string: TautString| string.modes(3).unwrap_err().field;
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
