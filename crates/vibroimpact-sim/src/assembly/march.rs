@@ -19,6 +19,9 @@ use contact_models::{ContactLaw, LARGEST, check_contract};
 
 /// Share of the time to an expected event that one panel may take.
 const SHARE: f64 = 0.85;
+/// Before an event, panels that are halved more often than this have every second length only: one that is used once costs less than
+/// its table.
+const SPARSE: i32 = 4;
 /// Number of successive events without progress in time that counts as chatter.
 const CHATTER: u64 = 10_000;
 /// Number of accepted panels between two checks for rest.
@@ -123,7 +126,8 @@ impl<'a> March<'a> {
                 self.horizon = None;
                 return self.land(target, left, reach.min(lasting));
             }
-            level = level.max(steps.level_within(SHARE * left));
+            let near = steps.level_within(SHARE * left);
+            level = if near > level + SPARSE { near + (near & 1) } else { level.max(near) };
         }
         if steps.step_s(level) > lasting {
             if lasting <= reach {

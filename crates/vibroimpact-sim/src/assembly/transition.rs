@@ -18,6 +18,9 @@ pub(super) const SINGULAR: f64 = 2.5e-4;
 /// this times the square of that impulse relative to the momentum.
 const WEIGHTED: f64 = 4e-6;
 
+/// Beyond the reach of the series, a first panel may have this share of that impulse: it is shorter by a factor of four.
+const EXTRAPOLATED: f64 = 1.0 / 32.0;
+
 /// A force is taken for one that grows as the power of 3/2 if it does so from once to twice this part of the contact's scale, and how
 /// closely (relative).
 const NEAR: f64 = 1e-3;
@@ -343,7 +346,7 @@ impl<'a> March<'a> {
             true => (tolerance * self.states[c].momentum / WEIGHTED).sqrt(),
             false => tolerance / SINGULAR,
         };
-        let small = |j: i32| {
+        let small = |j: i32, allowed: f64| {
             let h = self.tables.steps.step_s(j);
             let within = h.min(self.reach);
             let [mut compression, mut rate, _] = value(&series, within);
@@ -355,14 +358,19 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, rate).force_n * h <= allowed
         };
         // the force at the end of a panel grows with the panel
-        let mut coarse = if self.reach.is_finite() { self.tables.steps.level_within(4.0 * self.reach) } else { J_MIN };
-        let (mut fine, mut ahead) = (coarse, 1);
-        while fine < J_MAX && !small(fine) {
+        let known = if self.reach.is_finite() { self.tables.steps.level_within(4.0 * self.reach) } else { J_MIN };
+        let (mut coarse, mut fine, mut ahead) = (known, known, 1);
+        while fine < J_MAX && !small(fine, allowed) {
             (coarse, fine, ahead) = (fine + 1, (fine + ahead).min(J_MAX), 2 * ahead);
         }
         while coarse < fine {
             let middle = coarse + (fine - coarse) / 2;
-            if small(middle) { fine = middle } else { coarse = middle + 1 }
+            if small(middle, allowed) { fine = middle } else { coarse = middle + 1 }
+        }
+        // the fastest modes hardly matter to a force that is represented as it begins, but beyond their reach the compression is
+        // extrapolated
+        while touch.begins && (J_MIN + 1..=known).contains(&fine) && small(fine - 1, EXTRAPOLATED * allowed) {
+            fine -= 1;
         }
         fine
     }

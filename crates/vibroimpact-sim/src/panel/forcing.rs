@@ -125,23 +125,25 @@ impl Compliance {
     /// Adds modes that are integrated by parts, with these weights.
     #[inline(always)]
     pub fn add_by_parts(&mut self, modes: &ByParts, weights: &[f64; LANES]) {
-        for (l, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-            let (inverse, lambda, scale) = (modes.inverse.of_lane(l), modes.lambda.of_lane(l), modes.scale.0[l]);
-            let differentiated = |value: Complex64| match self.order {
-                Order::Displacement => value,
-                Order::Velocity => lambda * value,
-            };
-            let mut power = differentiated(inverse);
-            for value in &mut self.by_parts {
-                *value += weight * scale * power.im;
-                power *= inverse;
-            }
-            let (nodes_re, nodes_im) = &modes.to_nodes[l];
-            for (column, start) in self.legendre.iter_mut().zip(&modes.at_start) {
-                let start = differentiated(start.of_lane(l));
-                let (re, im) = (weight * scale * start.re, weight * scale * start.im);
+        if *weights == [0.0; LANES] {
+            return;
+        }
+        let order = self.order;
+        let differentiated = |value: ComplexLanes| match order {
+            Order::Displacement => value,
+            Order::Velocity => modes.lambda * value,
+        };
+        let weights = Lanes(*weights) * modes.scale;
+        let mut power = differentiated(modes.inverse);
+        for value in &mut self.by_parts {
+            (weights * power.im).0.iter().for_each(|part| *value += part);
+            power = power * modes.inverse;
+        }
+        for (column, start) in self.legendre.iter_mut().zip(&modes.at_start) {
+            let start = differentiated(*start) * weights;
+            for (l, (nodes_re, nodes_im)) in modes.to_nodes.iter().enumerate() {
                 for i in 0..Q {
-                    column[i] -= re * nodes_im[i] + im * nodes_re[i];
+                    column[i] -= start.re.0[l] * nodes_im[i] + start.im.0[l] * nodes_re[i];
                 }
             }
         }
