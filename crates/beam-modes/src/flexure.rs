@@ -34,7 +34,8 @@ pub(crate) struct Flexure {
 #[derive(Debug, Clone, Copy)]
 struct Joint([Option<Handover>; 3]);
 
-/// The plane of one end at one frequency, propagated along the beam; all lists in the order of the spans.
+/// The plane of one end at one frequency, propagated along the beam; all lists in the order of the spans. From the left the last span is
+/// not crossed.
 struct Sweep {
     /// The plane at the entry of each span.
     entries: Vec<Plane>,
@@ -147,7 +148,7 @@ impl Flexure {
         self.pass(node, plane, span, q).exit(plane)
     }
 
-    /// The plane that one end allows, propagated over every span from there; from the right, in reflected variables.
+    /// The plane that one end allows, propagated from there up to the last span; from the right over it, in reflected variables.
     fn sweep(&self, q: f64, from_right: bool) -> Sweep {
         let n = self.spans.len();
         let mut plane = self.start(q, from_right);
@@ -156,6 +157,10 @@ impl Flexure {
         for step in 0..n {
             let i = if from_right { n - 1 - step } else { step };
             sweep.entries.push(plane);
+            if step + 1 == n && !from_right {
+                // shapes are followed back to the left end from the start of a span only
+                break;
+            }
             let crossing = plane.cross(&self.waves(i, q));
             if step + 1 < n {
                 let joint = if from_right {
