@@ -43,6 +43,9 @@ use contact_models::{Body, Hertz};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
+/// Largest number of bending modes, and of axial modes.
+pub const MOST_MODES: usize = 10_000;
+
 /// A rod of circular cross-section with hemispherical ends, about to touch the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DroppedRod {
@@ -180,9 +183,9 @@ impl DroppedRod {
             angle,
             "an angle from 0 to pi/2 rad",
         )?;
-        let most = 10_000;
-        InvalidInput::unless(self.bending_modes <= most, "bending_modes", self.bending_modes, "at most 10000")?;
-        InvalidInput::unless(self.axial_modes <= most, "axial_modes", self.axial_modes, "at most 10000")
+        let few = |modes| modes <= MOST_MODES;
+        InvalidInput::unless(few(self.bending_modes), "bending_modes", self.bending_modes, "at most 10000")?;
+        InvalidInput::unless(few(self.axial_modes), "axial_modes", self.axial_modes, "at most 10000")
     }
 
     fn area_m2(&self) -> f64 {

@@ -174,7 +174,7 @@ fn mode_of_beam(beam: &Beam, waves: &Waves, n: usize) -> Fast {
 /// The number of modes with which the restitution may have converged.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<usize, InvalidInput> {
     let (growth, share) = growth(pose);
-    let target = share * pose.tolerance / taken_by_dashpot(&pose.law, &pose.striker);
+    let target = share * pose.tolerance / taken_by_dashpot(&pose.law);
     let contact = Excitation::new(pose, growth);
     let most = pose.source.most();
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);

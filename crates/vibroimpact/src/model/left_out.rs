@@ -22,7 +22,8 @@
 //!
 //! as well, where `N_i` is the larger number of modes of the change `d_i`.
 //!
-//! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
+//! `E_r/E` is the share of the energy of approach, that of the striker or of a structure that meets an immovable surface, that the
+//! remainder modes have after the impact. They respond to slow forces like
 //! the truncated modes; if they vibrate, the force was too fast for them. This share is known from one impact alone, and detects
 //! most accidental agreements. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
 //! remainder modes; the number of modes within its spectrum is then larger by a factor of up to `R^(-1/2)`. A dashpot, whose force
@@ -46,7 +47,7 @@
 //! If the restitution of another structure does not converge, the larger of both estimates counts.
 
 use contact_models::{ContactLaw, Law, Memory};
-use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Solution, Structure};
 
 use crate::impact::Impact;
 use crate::scene::compliance;
@@ -114,15 +115,16 @@ pub(super) fn too_short(resolution: f64) -> f64 {
     if resolution < 1.0 { resolution.max(f64::MIN_POSITIVE).powf(-0.5) } else { 1.0 }
 }
 
-/// Whether the force jumps at first touch.
-pub(super) fn jumps(law: &Law, striker: &Striker) -> bool {
-    let branch = law.touch(&Memory::default(), striker.speed_m_s);
-    law.force(&branch, 0.0, striker.speed_m_s).force_n > 0.0
+/// Whether the force jumps at first touch, which does not depend on the speed of approach.
+pub(super) fn jumps(law: &Law) -> bool {
+    let speed_m_s = 1.0;
+    let branch = law.touch(&Memory::default(), speed_m_s);
+    law.force(&branch, 0.0, speed_m_s).force_n > 0.0
 }
 
 /// `D`, the factor for a force that jumps at first touch.
-pub(super) fn taken_by_dashpot(law: &Law, striker: &Striker) -> f64 {
-    if jumps(law, striker) { TAKEN } else { 1.0 }
+pub(super) fn taken_by_dashpot(law: &Law) -> f64 {
+    if jumps(law) { TAKEN } else { 1.0 }
 }
 
 /// Possible change by the truncated modes at the end of a list, from its changes, the latest first.
@@ -144,12 +146,15 @@ pub(super) fn still_growing(modes: &[Mode]) -> f64 {
     }
 }
 
+/// Speed with which the rigid-body motions of structure and striker approach each other (m/s).
+fn approach_m_s(Impact { structure, striker, start, .. }: &Impact) -> f64 {
+    start.as_ref().map_or(striker.speed_m_s, |start| structure.approach_m_s(striker, start))
+}
+
 /// Restitution per impulse `(1/m + sum phi^2)/v` of an impact, with the rigid-body motions `phi` of its structure and the speed of
 /// approach `v` (1/(N s)).
 pub(super) fn restitution_per_impulse(impact: &Impact) -> f64 {
-    let Impact { structure, striker, start, .. } = impact;
-    let approach_m_s = start.as_ref().map_or(striker.speed_m_s, |start| structure.approach_m_s(striker, start));
-    structure.mobility_per_kg(striker) / approach_m_s
+    impact.structure.mobility_per_kg(&impact.striker) / approach_m_s(impact)
 }
 
 /// One more than the restitution that the impact would have if it ended with each of its separations.
@@ -175,12 +180,15 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 pub(super) fn energy_of_remainder(impact: &Impact, after: &Solution) -> f64 {
     let Impact { structure, remainder_modes, striker, law, .. } = impact;
     let from = structure.modes.len() - remainder_modes;
-    // in units of the striker's speed, so that no square overflows or underflows
-    let unit = striker.speed_m_s * striker.mass_kg.sqrt();
+    // at an immovable surface the structure itself is the mass that approaches
+    let mass_kg =
+        if striker.mass_kg.is_finite() { striker.mass_kg } else { structure.mobility_per_kg(striker).recip() };
+    // in units of the speed of approach, so that no square overflows or underflows
+    let unit = approach_m_s(impact) * mass_kg.sqrt();
     let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
     let energy: f64 =
         motion.map(|((mode, a), rate)| (mode.omega_rad_s * a / unit).powi(2) + (rate / unit).powi(2)).sum();
-    if energy.is_finite() { OF_ENERGY * energy * taken_by_dashpot(law, striker) } else { 0.0 }
+    if energy.is_finite() { OF_ENERGY * energy * taken_by_dashpot(law) } else { 0.0 }
 }
 
 /// The structure with a single mode in place of its remainder modes, with the same first two moments

@@ -281,7 +281,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let mut tightened = 0;
     let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
     let per_impulse = restitution_per_impulse(&first.impact);
-    let jumps = jumps(&pose.law, &pose.striker);
+    let jumps = jumps(&pose.law);
     let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, jumps, complete, too_many: None };
     loop {
         let count = rungs.last.count;

@@ -16,9 +16,11 @@
 //! ```
 //!
 //! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
-//! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact that
-//! number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that `M/1.4` is at least
-//! their number, and a small change from so few further modes may be an accident.
+//! expected to need, but not so large that this would cost more than the impact. For a structure that moves before the impact, as a
+//! dropped rod does, that number is not known, and `M` is as large as the cost admits: the motion may need all stated modes, so that
+//! `M/1.4` is at least their number, and a small change from so few further modes may be an accident. Of the further modes of a dropped
+//! rod one half are bending modes and the other axial ones, because either kind alone may have hardly any part in the motion, and no
+//! modes at all may be stated of it.
 //!
 //! The second formula holds for any stated modes if the force jumps at first touch. Changes then decrease as slowly as `1/N`, and
 //! nearly vanish for some numbers of modes (`left_out.rs`), so that a third number, `M/2`, is compared as well, and `|e_(M/1.4) -
@@ -28,7 +30,7 @@
 //! does not. `M` is then the number of the stated modes; if that stops as well, nothing is known about the truncated modes.
 
 use vibroimpact_sim::modal::{Settings, Solution};
-use vibroimpact_sim::{StopReason, both};
+use vibroimpact_sim::{StopReason, both, dropped_rod};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess};
@@ -49,6 +51,8 @@ const LEAST_SHARE: f64 = 0.25;
 /// which is solved three times and far more accurately.
 const SOLVER: f64 = 1e-6;
 const RICHER: usize = 2;
+/// Number of stated modes of a dropped rod below which the comparison costs as little as with this number.
+const FEW: usize = 8;
 
 /// The modes as they are stated, or all that a list has.
 pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
@@ -157,7 +161,7 @@ impl Compared {
             from = (*count, fewer);
         }
         let further = changes.get(..1).map_or(0.0, |latest| {
-            let jumps = jumps(&impact.law, &impact.striker);
+            let jumps = jumps(&impact.law);
             let accident = (LUCK * by_changes(latest, false)).max(energy);
             let accident = if impact.remainder_modes > 0 || jumps { accident } else { 0.0 };
             by_changes(&changes, jumps).max(accident).max(LEAST_SHARE * stated)
@@ -186,17 +190,13 @@ fn compare(
         }
         _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
     };
-    let affordable = RICHER * count.max(1);
-    let needed = match &scene.start {
-        Some(_) => affordable,
-        None => needed(scene, LOOSE, kept, cost)?.unwrap_or(count),
-    };
+    let fewest = if matches!(scene.structure, Structure::DroppedRod(_)) { FEW } else { 1 };
+    let affordable = RICHER * count.max(fewest);
+    let needed = if moves_before(scene) { affordable } else { needed(scene, LOOSE, kept, cost)?.unwrap_or(count) };
     let more = needed.clamp(count, affordable).min(most);
     match compare_with(scene, kept, impact, [count, more, most], cost)? {
         // with a motion before the impact, a comparison with as many modes shows nothing
-        Err(_) if more > count && scene.start.is_none() => {
-            compare_with(scene, kept, impact, [count, count, most], cost)
-        }
+        Err(_) if more > count && !moves_before(scene) => compare_with(scene, kept, impact, [count, count, most], cost),
         compared => Ok(compared),
     }
 }
@@ -209,12 +209,9 @@ fn compare_with(
     [count, more, most]: [usize; 3],
     cost: &mut Cost,
 ) -> Result<Result<Compared, String>, InvalidInput> {
-    let second = match &scene.start {
-        // the motion before the impact may need all stated modes
-        Some(_) if count < most => fewer(more).max(count),
-        _ => fewer(more),
-    };
-    let third = (scene.start.is_none() && jumps(&impact.law, &impact.striker)).then(|| fewer(second));
+    // the motion before the impact may need all stated modes
+    let second = if moves_before(scene) && count < most { fewer(more).max(count) } else { fewer(more) };
+    let third = (!moves_before(scene) && jumps(&impact.law)).then(|| fewer(second));
     let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
     let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
     let complete = |of: &Impact| of.remainder_modes == 0;
@@ -292,13 +289,19 @@ pub(super) fn needed(
     Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?))
 }
 
+/// Whether the structure moves before the impact.
+fn moves_before(scene: &Scene) -> bool {
+    scene.start.is_some() || matches!(scene.structure, Structure::DroppedRod(_))
+}
+
 /// The scene with this many modes in place of `count`, and remainder modes for the others.
 fn with_modes(scene: &Scene, count: usize, modes: usize) -> Scene {
     let mut other = scene.clone();
     match &mut other.structure {
         Structure::DroppedRod(rod) => {
-            let scaled = |kept: usize| (kept * modes).div_ceil(count.max(1));
-            (rod.bending_modes, rod.axial_modes) = (scaled(rod.bending_modes), scaled(rod.axial_modes));
+            let further = (modes - count).div_ceil(2);
+            let with = |stated: usize| (stated + further).min(dropped_rod::MOST_MODES);
+            (rod.bending_modes, rod.axial_modes) = (with(rod.bending_modes), with(rod.axial_modes));
         }
         _ => {
             other.modes = Modes::Count(modes);
