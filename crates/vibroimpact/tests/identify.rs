@@ -95,6 +95,11 @@ fn exact_data_give_their_true_parameters() {
     let found = identify(&scene(0.8e9, 0.07), &table, &["--free", FREE]);
     assert!((value(&found, 0) / 1.2e9 - 1.0).abs() < 1e-6, "{found:#}");
     assert!((value(&found, 1) / 0.05 - 1.0).abs() < 1e-6, "{found:#}");
+    // the estimated noise is not that with which the search begins
+    for (j, size) in [(0, 1.2e9), (1, 0.05)] {
+        let end = |k: usize| found["parameters"][j]["covariance_interval"][k].as_f64().unwrap();
+        assert!(end(1) - end(0) < 1e-6 * size, "{found:#}");
+    }
 }
 
 /// 95 % intervals of 12 tables with noise, twice; the study has thousands. Of 24 intervals that contain the true value with

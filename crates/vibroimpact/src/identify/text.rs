@@ -110,7 +110,7 @@ fn fits(found: &Identification, say: &mut impl FnMut(&str, &str)) {
         let reason = if found.degrees_of_freedom == 0 {
             "there are as many parameters as measured values"
         } else {
-            "the table states no standard deviations, and repeats no row"
+            "the table states no standard deviations, and no repeated rows tell the noise from the rest of the misfit"
         };
         say("fit", &format!("cannot be judged: {reason}"));
     }

@@ -26,8 +26,10 @@ pub(super) const FURTHEST: f64 = 10.0;
 /// Rounds of fit and estimate of the noise, and the relative change at which they agree.
 const MOST_ROUNDS: usize = 12;
 const AGREED: f64 = 1e-3;
-/// Relative noise that determines the weights of the quantities in the first round.
+/// Relative noise that determines the weights of the quantities in the first round, and the least that is estimated, which is about
+/// that of the solver.
 const FIRST_NOISE: f64 = 0.05;
+const LEAST_NOISE: f64 = 1e-9;
 /// Largest number of times that a profile may find a better minimum.
 const MOST_RESTARTS: usize = 4;
 
@@ -107,9 +109,8 @@ impl<'a> Work<'a> {
             }
         }
         // quantities without stated noise begin with the same share of their size
-        let size =
-            |place: usize| measured.iter().filter(|(_, of)| *of == place).map(|(v, _)| v.abs()).fold(0.0, f64::max);
-        let first: Vec<f64> = (0..groups.len()).map(|place| (FIRST_NOISE * size(place)).max(1e-30)).collect();
+        let first: Vec<f64> =
+            (0..groups.len()).map(|place| (FIRST_NOISE * size(&measured, place)).max(1e-30)).collect();
         let sd = sd.into_iter().zip(&measured).map(|(stated, (_, place))| stated.unwrap_or(first[*place])).collect();
         let freedom = measured.len() - coordinates.len() - records;
         let parameters: Vec<f64> = coordinates.iter().map(|parameter| parameter.start).collect();
@@ -267,12 +268,16 @@ impl<'a> Work<'a> {
             let members: Vec<usize> = (0..self.measured.len()).filter(of_group).collect();
             let squares: f64 = members.iter().map(|&k| residuals[k].powi(2)).sum();
             let factor = (squares / freedom).sqrt();
-            // a fit without any residual leaves the noise as it is
-            if factor <= 1e-9 || factor.is_nan() {
+            if factor.is_nan() {
                 continue;
             }
-            settled &= (factor - 1.0).abs() < AGREED;
-            members.iter().for_each(|&k| self.sd[k] *= factor);
+            // the residuals of exact data are rounding errors, and their noise is that of the solver
+            let least = (LEAST_NOISE * size(&self.measured, place)).max(1e-30);
+            for k in members {
+                let estimated = (factor * self.sd[k]).max(least);
+                settled &= (estimated / self.sd[k] - 1.0).abs() < AGREED;
+                self.sd[k] = estimated;
+            }
         }
         settled
     }
@@ -330,6 +335,11 @@ impl<'a> Work<'a> {
             return Ok(profiles);
         }
     }
+}
+
+/// Size of the largest of the measured values of a group.
+fn size(measured: &[(f64, usize)], group: usize) -> f64 {
+    measured.iter().filter(|(_, of)| *of == group).map(|(value, _)| value.abs()).fold(0.0, f64::max)
 }
 
 fn settings() -> Settings {
