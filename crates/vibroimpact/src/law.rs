@@ -223,13 +223,15 @@ impl Parameters {
     fn text(&self) -> String {
         match self {
             Parameters::Mujoco { solref: Some([time, ratio]), solref_direct: [stiffness, damping] } => {
-                format!("solref \"{time:.6} {ratio:.6}\", or \"{stiffness:.6e} {damping:.6e}\"")
+                let [time, ratio] = [time, ratio].map(|value| decimals(*value));
+                format!("solref \"{time} {ratio}\", or \"{stiffness:.6e} {damping:.6e}\"")
             }
             Parameters::Mujoco { solref: None, solref_direct: [stiffness, damping] } => {
                 format!("solref \"{stiffness:.6e} {damping:.6e}\"")
             }
             Parameters::KelvinVoigt { stiffness_n_m, damping_n_s_m, damping_ratio } => {
-                format!("k = {stiffness_n_m:.6e} N/m, c = {damping_n_s_m:.6e} N s/m, damping ratio {damping_ratio:.6}")
+                let ratio = decimals(*damping_ratio);
+                format!("k = {stiffness_n_m:.6e} N/m, c = {damping_n_s_m:.6e} N s/m, damping ratio {ratio}")
             }
             Parameters::HuntCrossley { stiffness_n_m1_5, damping_s_m, .. } => {
                 format!("k = {stiffness_n_m1_5:.6e} N/m^1.5, D = {damping_s_m:.6e} s/m")
@@ -239,6 +241,11 @@ impl Parameters {
             }
         }
     }
+}
+
+/// Six decimals, or a power of ten for a number to which they leave less than four digits, such as the time constant for a short step.
+fn decimals(value: f64) -> String {
+    if value == 0.0 || value >= 1e-3 { format!("{value:.6}") } else { format!("{value:.6e}") }
 }
 
 impl From<Stepped> for AtStep {

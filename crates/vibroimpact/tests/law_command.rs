@@ -48,6 +48,23 @@ fn parameters_printed_are_those_of_the_law() {
     assert!(printed(&[]).contains("none: the law cannot have this restitution"));
 }
 
+/// The time constant for a short step, and the damping ratio for a restitution near one.
+#[test]
+fn small_parameters_are_printed_with_all_their_digits() {
+    for more in [&["--step-s", "1e-7"][..], &["--restitution", "0.9999"]] {
+        let arguments: Vec<&str> =
+            if more[0] == "--restitution" { [&["law"], more, &WANTED[3..]].concat() } else { [&WANTED, more].concat() };
+        let folder = tempfile::tempdir().unwrap();
+        let text = stdout(&run(folder.path(), &[&arguments[..], &["--law", "mujoco"]].concat()));
+        let json = stdout(&run(folder.path(), &[&arguments[..], &["--law", "mujoco", "--json"]].concat()));
+        let exact = serde_json::from_str::<Value>(&json).unwrap()["laws"][0]["parameters"]["solref"].clone();
+        let printed = text.split('"').nth(1).unwrap().split(' ').map(|number| number.parse::<f64>().unwrap());
+        for (printed, exact) in printed.zip(exact.as_array().unwrap()) {
+            assert!((printed / exact.as_f64().unwrap() - 1.0).abs() < 1e-4, "{text}");
+        }
+    }
+}
+
 #[test]
 fn a_step_and_parameters_that_make_up_for_it() {
     let answer = answer(&["--step-s", "0.001"]);
