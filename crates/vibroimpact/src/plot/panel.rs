@@ -50,8 +50,12 @@ pub(super) fn draw(canvas: &Canvas, panel: &Panel, x: &Scale, y: &Scale, r: &Rec
     for (series, colour) in coloured(panel) {
         draw_series(canvas, series, colour, r, &at)?;
     }
-    let empty = panel.heat.is_none() && panel.series.iter().all(|s| s.x.is_empty());
-    if empty {
+    // rules and spans alone are no data, nor are zeros on a logarithmic axis
+    let has_data = |series: &Series| {
+        series.abscissas().any(|u| drawable(u, panel.x.logarithmic))
+            && series.ordinates().any(|v| drawable(v, panel.y.logarithmic))
+    };
+    if panel.heat.is_none() && !panel.series.iter().any(has_data) {
         let middle = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom));
         canvas.text("no data", middle, Lettering { vertical: VPos::Center, ..SMALL })?;
     }

@@ -94,6 +94,9 @@ fn unusual_data_gives_a_sound_picture() {
     }
     let empty: [f64; 0] = [];
     assert!(line(&empty, &empty).svg().unwrap().contains("no data"));
+    let stems =
+        Panel::new(Axis::new("x"), Axis::new("y").log()).with(Series::stem(&[1.0, 2.0], &[0.0, 0.0], Marker::Dot));
+    assert!(Figure::new("").row([stems]).svg().unwrap().contains("no data"));
     assert_well_formed(&Figure::new("").svg().unwrap());
     assert_well_formed(&Figure::new("").row([]).svg().unwrap());
     let map = HeatMap::new(&empty, &[1.0], vec![], Axis::new("e"));
