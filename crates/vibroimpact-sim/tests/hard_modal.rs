@@ -272,6 +272,30 @@ fn reversals_before_a_stiff_remainder() {
     }
 }
 
+/// A light mode that turns thousands of times within a contact, and moves the surface at half the speed of the ball or more: no step
+/// beyond a turn of it can tell whether the surfaces part at once, and each longer one would be rejected.
+#[test]
+fn the_first_step_follows_a_fast_mode_that_vibrates() {
+    let (shape, omega_rad_s) = (0.1, 1e9);
+    let mut structure = pinned(20, 0.02, GOLDEN);
+    structure.modes.push(Mode { omega_rad_s, damping_ratio: 1e-3, shape });
+    let solver = Solver::new(&structure).unwrap();
+    let rejected = |speed_m_s: f64, phase: f64| {
+        let mut start = Start::at_rest(structure.modes.len());
+        let vibrates = speed_m_s / shape;
+        (start.rate[20], start.amplitude[20]) = (vibrates * phase.cos(), vibrates * phase.sin() / omega_rad_s);
+        let settings = Settings { estimate_uncertainty: false, max_sub_impacts: 1, ..settings(1e-6) };
+        solver.solve(&ball(), &hertz(), Some(&start), &settings).unwrap().counts.rejected_steps
+    };
+    let at_rest = rejected(0.0, 0.0);
+    for speed_m_s in [0.5, 0.9] {
+        for phase in [0.0, 0.3, -1.5] {
+            let moving = rejected(speed_m_s, phase);
+            assert!(moving <= at_rest + 4, "{speed_m_s} m/s, phase {phase}: {moving}, at rest {at_rest}");
+        }
+    }
+}
+
 /// A contact a thousand times stiffer than a mode behind it that is faster than all others: this mode takes up nearly all of the
 /// compression, and an error of the force must not count as a separation.
 #[test]

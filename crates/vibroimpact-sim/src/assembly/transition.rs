@@ -2,7 +2,7 @@
 //! event of the run.
 
 use super::dense::Event;
-use super::enclosure::first_difference;
+use super::enclosure::{Held, first_difference, of_panel};
 use super::motion::{March, Target};
 use super::solution::Interval;
 use super::state::{Phase, State, Touch};
@@ -20,6 +20,9 @@ const WEIGHTED: f64 = 4e-6;
 
 /// Beyond the reach of the series, a first panel may have this share of that impulse: it is shorter by a factor of four.
 const EXTRAPOLATED: f64 = 1.0 / 32.0;
+/// There, the polynomial may miss this share of the speed of approach: otherwise the panel is too long to tell that the surfaces do not
+/// part at once.
+const UNCERTAIN: f64 = 0.5;
 
 /// A force is taken for one that grows as the power of 3/2 if it does so from once to twice this part of the contact's scale, and how
 /// closely (relative).
@@ -346,7 +349,7 @@ impl<'a> March<'a> {
             true => (tolerance * self.states[c].momentum / WEIGHTED).sqrt(),
             false => tolerance / SINGULAR,
         };
-        let small = |j: i32, allowed: f64| {
+        let at_end = |j: i32| {
             let h = self.tables.steps.step_s(j);
             let within = h.min(self.reach);
             let [mut compression, mut rate, _] = value(&series, within);
@@ -354,7 +357,10 @@ impl<'a> March<'a> {
                 // the surfaces approach and recede within the panel: the end does not tell how far they overlap before
                 [compression, rate, _] = value(&largest, within);
             }
-            let compression = compression + rate.max(0.0) * (h - within);
+            (h, compression + rate.max(0.0) * (h - within), rate)
+        };
+        let small = |j: i32, allowed: f64| {
+            let (h, compression, rate) = at_end(j);
             law.force(&touch.branch, compression, rate).force_n * h <= allowed
         };
         // the force at the end of a panel grows with the panel
@@ -367,9 +373,22 @@ impl<'a> March<'a> {
             let middle = coarse + (fine - coarse) / 2;
             if small(middle, allowed) { fine = middle } else { coarse = middle + 1 }
         }
-        // the fastest modes hardly matter to a force that is represented as it begins, but beyond their reach the compression is
-        // extrapolated
-        while touch.begins && (J_MIN + 1..=known).contains(&fine) && small(fine - 1, EXTRAPOLATED * allowed) {
+        // beyond the reach of the fastest modes the compression is extrapolated; they hardly matter to a force that is represented as it
+        // begins, unless they vibrate
+        let mut held = Held::default();
+        let mut follows = |j: i32| {
+            let (h, compression, rate) = at_end(j);
+            let (missed, motion) = (self.tables.missed(self.system, j), (&*self.amplitude, &*self.rate));
+            let [missed, slope, _] = of_panel(self.system, missed, &self.loads, c, h, motion, (&[], &mut held));
+            let force = |overlap: f64, rate: f64| law.force(&touch.branch, overlap, rate).force_n;
+            let error = force(compression + missed, rate + slope / h) - force(compression, rate);
+            slope <= UNCERTAIN * self.states[c].rate * h && error * h <= tolerance
+        };
+        while touch.begins
+            && (J_MIN + 1..=known).contains(&fine)
+            && small(fine - 1, EXTRAPOLATED * allowed)
+            && follows(fine - 1)
+        {
             fine -= 1;
         }
         fine
