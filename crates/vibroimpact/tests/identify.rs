@@ -102,6 +102,41 @@ fn exact_data_give_their_true_parameters() {
     }
 }
 
+/// A plate's peak force needs many more modes than its restitution.
+#[test]
+fn modes_are_chosen_for_every_measured_quantity() {
+    let scene = |law: [f64; 2], speed: f64| {
+        json!({
+            "structure": {
+                "kind": "plate", "length_m": 0.4, "width_m": 0.3, "thickness_m": 0.005, "youngs_modulus_pa": 2e11,
+                "poissons_ratio": 0.3, "density_kg_m3": 7800, "damping_ratio": 0.01,
+                "edges": ["pinned", "pinned", "pinned", "pinned"]
+            },
+            "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": speed },
+            "contact": { "law": "hunt-crossley", "stiffness_n_m1_5": law[0], "restitution": law[1] },
+            "location_m": [0.2, 0.15]
+        })
+    };
+    let truth = [3e9, 0.7];
+    let mut table = "striker.speed_m_s,restitution,restitution_sd,peak_force_n,peak_force_n_sd\n".to_owned();
+    for speed in [0.5, 2.0, 4.0] {
+        let mut fine = scene(truth, speed);
+        (fine["modes"], fine["residual_compliance"]) = (json!(1000), json!(true));
+        let found = Scene::from_value(&fine).unwrap().impact().unwrap().solve().unwrap();
+        let peak = found.sub_impacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
+        let restitution = found.restitution.unwrap();
+        table += &format!("{speed},{restitution},{},{peak},{}\n", 0.01 * restitution, 0.01 * peak);
+    }
+    let found =
+        identify(&scene([2.5e9, 0.6], 1.0), &table, &["--free", "contact.stiffness_n_m1_5,contact.restitution"]);
+    for (j, truth) in truth.into_iter().enumerate() {
+        let end = |k: usize| found["parameters"][j]["covariance_interval"][k].as_f64().unwrap();
+        assert!((value(&found, j) - truth).abs() < 0.1 * (end(1) - end(0)) / 2.0, "{found:#}");
+    }
+    let left_out_sd = found["left_out_modes_sd"].as_f64().unwrap();
+    assert!(left_out_sd > 0.0 && left_out_sd < 1.0, "{found:#}");
+}
+
 /// 95 % intervals of 12 tables with noise, twice; the study has thousands. Of 24 intervals that contain the true value with
 /// probability 0.95, fewer than 19 do so one time in ten thousand.
 #[test]

@@ -206,6 +206,7 @@ impl Work<'_> {
             noise,
             lack_of_fit: lack_of_fit(data, &residuals, self.freedom),
             modes: self.model.modes(),
+            left_out_modes_sd: self.model.left_out_sd(),
             grazing_lines: grazing.map(|(_, row)| row.line).collect(),
             starts: starts
                 .into_iter()

@@ -28,10 +28,17 @@ const MOST_SUB_IMPACTS: usize = 1000;
 const MOST_STEPS: u64 = 20_000;
 /// Rows, spread over the table, for which the number of modes is chosen.
 const PROBES: usize = 12;
-/// The restitution is to be independent of the number of modes within this share of the stated noise, within these limits.
-const SHARE_OF_NOISE: f64 = 0.2;
+/// Measured quantities are to be independent of the number of modes within this share of the stated noise, and the restitution within these
+/// limits.
+pub(super) const SHARE_OF_NOISE: f64 = 0.2;
 const TIGHTEST: f64 = 1e-6;
 const LOOSEST: f64 = 1e-2;
+
+/// The number of modes is raised by this factor, up to a largest one, and a change by two such steps is taken for this part of what all
+/// further modes change.
+const RAISE: f64 = 1.4;
+const MOST_MODES: usize = 500;
+const FURTHER: f64 = 3.0;
 
 /// The impacts of a table as functions of the free fields.
 pub(super) struct Model<'a> {
@@ -39,6 +46,8 @@ pub(super) struct Model<'a> {
     pub free: &'a [Free],
     tree: Value,
     modes: Option<usize>,
+    /// Largest change of a measured quantity by further modes, in standard deviations of its noise, where it was estimated.
+    left_out_sd: Option<f64>,
     /// Memory that is reused from impact to impact, for each thread.
     kept: Vec<Mutex<Kept>>,
 }
@@ -58,10 +67,10 @@ impl<'a> Model<'a> {
     pub fn new(tree: &Value, data: &'a Data, free: &'a [Free], start: &[f64]) -> Result<Model<'a>, InvalidInput> {
         let threads = thread::available_parallelism().map_or(1, NonZero::get).min(data.rows.len());
         let kept = (0..threads).map(|_| Mutex::default()).collect();
-        let mut model = Model { data, free, tree: tree.clone(), modes: None, kept };
+        let mut model = Model { data, free, tree: tree.clone(), modes: None, left_out_sd: None, kept };
         model.require_limits(start)?;
         let mut kept = Kept::default();
-        let mut most = None;
+        let (mut most, mut probes) = (None, Vec::new());
         let stride = data.rows.len().div_ceil(PROBES);
         for (i, row) in data.rows.iter().enumerate() {
             let scene = model.scene(row, start)?;
@@ -85,6 +94,7 @@ impl<'a> Model<'a> {
                         beam["theory"] = theory.clone();
                     }
                 }
+                probes.push(row);
                 Some(answer.modes)
             } else {
                 None
@@ -94,6 +104,7 @@ impl<'a> Model<'a> {
         model.modes = most;
         // an impact that cannot be resolved is reported before the search begins
         model.require_impacts(start, &mut kept)?;
+        model.resolve_quantities(&probes, start, &mut kept);
         let begun = Instant::now();
         data.rows.iter().for_each(|row| drop(model.course(row, start, &mut kept)));
         if begun.elapsed() < WORTH_A_THREAD {
@@ -148,12 +159,53 @@ impl<'a> Model<'a> {
     /// The same impacts for another table, with the number of modes that was chosen.
     pub fn for_table<'b>(&'b self, data: &'b Data) -> Model<'b> {
         let kept = self.kept.iter().map(|_| Mutex::default()).collect();
-        Model { data, free: self.free, tree: self.tree.clone(), modes: self.modes, kept }
+        Model { data, free: self.free, tree: self.tree.clone(), modes: self.modes, left_out_sd: self.left_out_sd, kept }
     }
 
     /// The number of modes that was chosen or stated; `None` for all that are listed.
     pub fn modes(&self) -> Option<usize> {
         self.modes
+    }
+
+    /// Largest change of a measured quantity other than the restitution by further modes, in standard deviations of its noise, where it
+    /// was estimated.
+    pub fn left_out_sd(&self) -> Option<f64> {
+        self.left_out_sd
+    }
+
+    /// Raises the number of modes until further ones change no measured quantity of these rows by more than a share of its noise, as far as
+    /// the impacts can be resolved. Modes that hardly change the restitution may change a peak force.
+    fn resolve_quantities(&mut self, rows: &[&Row], parameters: &[f64], kept: &mut Kept) {
+        let Some(count) = self.modes else { return };
+        let more = |count: &usize| (*count as f64 * RAISE).ceil() as usize;
+        let mut in_noise = |count| {
+            self.modes = Some(count);
+            let of_row = |row: &&Row| self.in_noise(row, parameters, kept);
+            (count, rows.iter().map(of_row).collect::<Option<Vec<_>>>().map(|rows| rows.concat()))
+        };
+        let mut tried: Vec<_> = [count, more(&count), more(&more(&count))].map(&mut in_noise).into();
+        let mut left_out_sd = None;
+        while let [(_, Some(here)), (next, Some(more_modes)), (last, Some(most_modes))] = &tried[..]
+            && !here.is_empty()
+        {
+            let change = largest_change(here, more_modes).max(largest_change(here, most_modes));
+            left_out_sd = Some(FURTHER * change);
+            if FURTHER * change <= SHARE_OF_NOISE || *next > MOST_MODES {
+                break;
+            }
+            let following = in_noise(more(last));
+            tried.remove(0);
+            tried.push(following);
+        }
+        self.modes = tried.first().map(|(count, _)| *count);
+        self.left_out_sd = left_out_sd;
+    }
+
+    /// The quantities of a row whose noise is stated, except the restitution, in standard deviations; `None` if it cannot be resolved.
+    fn in_noise(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Option<Vec<f64>> {
+        let Course { solution, .. } = self.course(row, parameters, kept)?;
+        let stated = row.measured.iter().filter(|(quantity, ..)| *quantity != Quantity::Restitution);
+        Some(stated.filter_map(|(quantity, _, sd)| sd.map(|sd| quantity.of(&solution) / sd)).collect())
     }
 
     /// The scene of a row.
@@ -257,6 +309,16 @@ fn tolerance(scene: &Scene, row: &Row) -> f64 {
     let least = noise.fold(f64::INFINITY, f64::min);
     let stated = scene.tolerance.unwrap_or(crate::model::DEFAULT_TOLERANCE);
     if least.is_finite() { (SHARE_OF_NOISE * least).clamp(TIGHTEST, LOOSEST) } else { stated }
+}
+
+/// Largest difference of two lists; a quantity that only one of them has differs by any amount.
+fn largest_change(one: &[f64], other: &[f64]) -> f64 {
+    let change = |(a, b): (&f64, &f64)| match (a.is_nan(), b.is_nan()) {
+        (false, false) => (a - b).abs(),
+        (true, true) => 0.0,
+        _ => f64::MAX,
+    };
+    one.iter().zip(other).map(change).fold(0.0, f64::max)
 }
 
 /// An error in the scene of a row, with its line.

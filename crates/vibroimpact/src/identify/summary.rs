@@ -31,6 +31,9 @@ pub struct Identification {
     pub lack_of_fit: Vec<LackOfFit>,
     /// Number of modes, chosen once; null for all that are listed.
     pub modes: Option<usize>,
+    /// Largest change of a measured quantity other than the restitution by further modes, in standard deviations of its noise, where the
+    /// number of modes is chosen and noise is stated. The number of modes is raised until it is at most 0.2, or to 500.
+    pub left_out_modes_sd: Option<f64>,
     /// Rows whose number of contacts changes within the steps of the derivative: they are near grazing, and the sum of squares is
     /// not smooth there.
     pub grazing_lines: Vec<u64>,

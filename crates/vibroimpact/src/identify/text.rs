@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
+use super::forward::SHARE_OF_NOISE;
 use super::summary::{Identification, Identified};
 use crate::text::{counted, filled, printable, quantity, significant};
 
@@ -66,6 +67,10 @@ pub fn text(found: &Identification) -> String {
     }
     let modes = |count| counted(count as u64, "mode", "modes");
     say("model", &(found.modes.map_or("all modes listed".to_owned(), modes) + ", the same for every row"));
+    if let Some(sd) = found.left_out_modes_sd.filter(|sd| *sd > SHARE_OF_NOISE) {
+        let sd = significant(sd, 2);
+        say("further modes", &format!("may change a measured quantity by {sd} standard deviations of its noise"));
+    }
     search(found, &mut say);
     if !found.candidates.is_empty() {
         text.push('\n');
