@@ -34,8 +34,8 @@ pub(super) const SHARE_OF_NOISE: f64 = 0.2;
 const TIGHTEST: f64 = 1e-6;
 const LOOSEST: f64 = 1e-2;
 
-/// The number of modes is raised by this factor, up to a largest one, and a change by two such steps is taken for this part of what all
-/// further modes change.
+/// For other quantities the number of modes is raised by this factor, until it exceeds a limit. All further modes are assumed to change a
+/// quantity by so many times the change from two such steps.
 const RAISE: f64 = 1.4;
 const MOST_MODES: usize = 500;
 const FURTHER: f64 = 3.0;
@@ -94,7 +94,9 @@ impl<'a> Model<'a> {
                         beam["theory"] = theory.clone();
                     }
                 }
-                probes.push(row);
+                if of_other_quantities(row).next().is_some() {
+                    probes.push(row);
+                }
                 Some(answer.modes)
             } else {
                 None
@@ -173,10 +175,10 @@ impl<'a> Model<'a> {
         self.left_out_sd
     }
 
-    /// Raises the number of modes until further ones change no measured quantity of these rows by more than a share of its noise, as far as
-    /// the impacts can be resolved. Modes that hardly change the restitution may change a peak force.
+    /// Raises the number of modes until further ones change no measured quantity of these rows by more than a share of its noise. Modes that
+    /// hardly change the restitution may change a peak force. It ends earlier where the impacts with more modes cannot be resolved.
     fn resolve_quantities(&mut self, rows: &[&Row], parameters: &[f64], kept: &mut Kept) {
-        let Some(count) = self.modes else { return };
+        let Some(count) = self.modes.filter(|_| !rows.is_empty()) else { return };
         let more = |count: &usize| (*count as f64 * RAISE).ceil() as usize;
         let mut in_noise = |count| {
             self.modes = Some(count);
@@ -185,9 +187,7 @@ impl<'a> Model<'a> {
         };
         let mut tried: Vec<_> = [count, more(&count), more(&more(&count))].map(&mut in_noise).into();
         let mut left_out_sd = None;
-        while let [(_, Some(here)), (next, Some(more_modes)), (last, Some(most_modes))] = &tried[..]
-            && !here.is_empty()
-        {
+        while let [(_, Some(here)), (next, Some(more_modes)), (last, Some(most_modes))] = &tried[..] {
             let change = largest_change(here, more_modes).max(largest_change(here, most_modes));
             left_out_sd = Some(FURTHER * change);
             if FURTHER * change <= SHARE_OF_NOISE || *next > MOST_MODES {
@@ -201,11 +201,10 @@ impl<'a> Model<'a> {
         self.left_out_sd = left_out_sd;
     }
 
-    /// The quantities of a row whose noise is stated, except the restitution, in standard deviations; `None` if it cannot be resolved.
+    /// The other measured quantities of a row, in standard deviations; `None` if its impact cannot be resolved.
     fn in_noise(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Option<Vec<f64>> {
         let Course { solution, .. } = self.course(row, parameters, kept)?;
-        let stated = row.measured.iter().filter(|(quantity, ..)| *quantity != Quantity::Restitution);
-        Some(stated.filter_map(|(quantity, _, sd)| sd.map(|sd| quantity.of(&solution) / sd)).collect())
+        Some(of_other_quantities(row).map(|(quantity, sd)| quantity.of(&solution) / sd).collect())
     }
 
     /// The scene of a row.
@@ -309,6 +308,12 @@ fn tolerance(scene: &Scene, row: &Row) -> f64 {
     let least = noise.fold(f64::INFINITY, f64::min);
     let stated = scene.tolerance.unwrap_or(crate::model::DEFAULT_TOLERANCE);
     if least.is_finite() { (SHARE_OF_NOISE * least).clamp(TIGHTEST, LOOSEST) } else { stated }
+}
+
+/// The measured quantities of a row whose noise is stated, except the restitution, with their standard deviations.
+fn of_other_quantities(row: &Row) -> impl Iterator<Item = (Quantity, f64)> {
+    let stated = row.measured.iter().filter_map(|(quantity, _, sd)| sd.map(|sd| (*quantity, sd)));
+    stated.filter(|(quantity, _)| *quantity != Quantity::Restitution)
 }
 
 /// Largest difference of two lists; a quantity that only one of them has differs by any amount.
