@@ -19,8 +19,8 @@ use contact_models::{ContactLaw, LARGEST, check_contract};
 
 /// Share of the time to an expected event that one panel may take.
 const SHARE: f64 = 0.85;
-/// Before an event, panels that are halved more often than this have every second length only: one that is used once costs less than
-/// its table.
+/// Before an event, panels that are shorter by more than this many halvings than accuracy demands have every second length only: the
+/// table of a length that serves once costs more than a further panel.
 const SPARSE: i32 = 4;
 /// Number of successive events without progress in time that counts as chatter.
 const CHATTER: u64 = 10_000;

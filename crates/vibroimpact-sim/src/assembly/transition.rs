@@ -18,10 +18,10 @@ pub(super) const SINGULAR: f64 = 2.5e-4;
 /// this times the square of that impulse relative to the momentum.
 const WEIGHTED: f64 = 4e-6;
 
-/// Beyond the reach of the series, a first panel may have this share of that impulse: it is shorter by a factor of four.
+/// A first panel beyond the reach of the series may have this share of the impulse that accuracy allows, which makes it four times shorter.
 const EXTRAPOLATED: f64 = 1.0 / 32.0;
-/// There, the polynomial may miss this share of the speed of approach: otherwise the panel is too long to tell that the surfaces do not
-/// part at once.
+/// On such a panel the polynomial may miss this share of the speed of approach. If it missed more, it could not be told whether the
+/// surfaces part at once.
 const UNCERTAIN: f64 = 0.5;
 
 /// A force is taken for one that grows as the power of 3/2 if it does so from once to twice this part of the contact's scale, and how

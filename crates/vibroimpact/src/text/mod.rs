@@ -231,8 +231,8 @@ pub fn fit(fit: &FitSummary) -> String {
         let names = fit.undetermined.join(" and ");
         let _ = writeln!(
             text,
-            "  not determined by these data: {names}. The error hardly changes with it, or in a combination with others. \
-             Below 1e-6 and above 1e6 only that it is very small or very large is known."
+            "  not determined by these data: {names}. The error hardly changes with such a parameter, alone or in a combination. \
+             A value below 1e-6 or above 1e6 means only very small or very large."
         );
     } else if !fit.converged {
         text += "  the search ended at its limit; these are the best parameters that it met\n";
