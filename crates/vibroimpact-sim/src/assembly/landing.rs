@@ -2,10 +2,10 @@
 //! statistics or the end of the run.
 
 use super::collocate::{Collocated, Unknown};
+use super::first_panel::SINGULAR;
 use super::judge::Judgement;
 use super::motion::{Horizon, March, Target};
 use super::terminal::{Landed, Window};
-use super::transition::SINGULAR;
 use super::trial::{NEWTON_SHARE, Trial};
 use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Q};

@@ -19,7 +19,7 @@ pub(crate) const SHORT: f64 = 0.25;
 /// The power [`TAYLOR`] of this frequency (rad/s) is well within the range of numbers. Faster vibrations have the shorter reach.
 const FASTEST: f64 = 1e10;
 
-type Series = [f64; TAYLOR];
+pub(crate) type Series = [f64; TAYLOR];
 
 /// Longest time (s) for which the series of a motion hold whose fastest vibration has this frequency.
 pub(crate) fn reach_s(fastest_rad_s: f64) -> f64 {

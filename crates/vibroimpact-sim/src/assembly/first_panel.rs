@@ -1,0 +1,135 @@
+//! Length of the first panel of a contact and of a branch, which no accepted panel has tested yet.
+//!
+//! At touch it follows from the impulse that the force would have if free motion continued, because the truncation of a force that begins
+//! as `t^(3/2)` is a known function of this impulse (`docs/theory/modal.md`, "How a force begins and ends").
+
+use super::enclosure::{Held, of_panel};
+use super::motion::March;
+use super::terminal::{Series, series_of, value};
+use crate::panel::dyadic::{J_MAX, J_MIN};
+use contact_models::Branch;
+
+/// Bound on the relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch, and its derivatives.
+pub(super) const SINGULAR: f64 = 2.5e-4;
+/// Where the force is represented as `t^(3/2)` times a polynomial, the error of a first panel's impulse relative to the momentum is
+/// this times the square of that impulse relative to the momentum.
+const WEIGHTED: f64 = 4e-6;
+
+/// A first panel beyond the reach of the series may have this share of the impulse that accuracy allows, which makes it four times shorter.
+const EXTRAPOLATED: f64 = 1.0 / 32.0;
+/// On such a panel the polynomial may miss this share of the speed of approach. If it missed more, it could not be told whether the
+/// surfaces part at once.
+const UNCERTAIN: f64 = 0.5;
+
+/// A contact that touches now, as it would compress if free motion continued.
+struct Forecast<'m, 'a> {
+    march: &'m March<'a>,
+    contact: usize,
+    branch: Branch,
+    /// Power series of the overlap, and the sizes of its terms.
+    series: Series,
+    sizes: Series,
+}
+
+impl Forecast<'_, '_> {
+    fn step_s(&self, level: i32) -> f64 {
+        self.march.tables.steps.step_s(level)
+    }
+
+    /// Overlap and rate after a panel. Beyond the reach of the series they follow a straight line.
+    fn end(&self, level: i32) -> (f64, f64) {
+        let h = self.step_s(level);
+        let within = h.min(self.march.reach);
+        let [mut compression, mut rate, _] = value(&self.series, within);
+        if rate < 0.0 {
+            // the surfaces approach and recede within the panel: the end does not tell how far they overlap before
+            [compression, rate, _] = value(&self.sizes, within);
+        }
+        (compression + rate.max(0.0) * (h - within), rate)
+    }
+
+    fn force(&self, (compression, rate): (f64, f64)) -> f64 {
+        self.march.law(self.contact).force(&self.branch, compression, rate).force_n
+    }
+
+    /// Bound on the impulse of a panel (N s), with the force at its end all along it.
+    fn impulse(&self, level: i32) -> f64 {
+        self.force(self.end(level)) * self.step_s(level)
+    }
+
+    /// Whether the polynomial through the nodes follows the vibrations of the modes on a panel: what it misses changes the impulse by no
+    /// more than `allowed` (N s), and leaves certain that the surfaces approach.
+    fn follows_vibrations(&self, level: i32, allowed: f64, held: &mut Held) -> bool {
+        let (march, c, h) = (self.march, self.contact, self.step_s(level));
+        let (missed, motion) = (march.tables.missed(march.system, level), (&*march.amplitude, &*march.rate));
+        let [missed, slope, _] = of_panel(march.system, missed, &march.loads, c, h, motion, (&[], held));
+        let (compression, rate) = self.end(level);
+        let error = self.force((compression + missed, rate + slope / h)) - self.force((compression, rate));
+        slope <= UNCERTAIN * march.states[c].rate * h && error * h <= allowed
+    }
+}
+
+impl<'a> March<'a> {
+    /// Step exponent of the longest panel on which a force that begins at first touch is represented within the tolerance.
+    pub(super) fn level_at_touch(&self, c: usize) -> i32 {
+        let Some(touch) = self.states[c].touch() else { return J_MIN };
+        let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);
+        series[0] = self.states[c].overlap;
+        let sizes = series.map(f64::abs);
+        let forecast = Forecast { march: self, contact: c, branch: touch.branch, series, sizes };
+        let tolerance = self.impulse_tolerance(c);
+        let allowed = match touch.begins {
+            true => (tolerance * self.states[c].momentum / WEIGHTED).sqrt(),
+            false => tolerance / SINGULAR,
+        };
+        let covered = if self.reach.is_finite() { self.tables.steps.level_within(4.0 * self.reach) } else { J_MIN };
+        let level = first_level_where(covered, |j| forecast.impulse(j) <= allowed);
+        if level > covered || !touch.begins {
+            return level;
+        }
+        // beyond the reach of the fastest modes the compression is extrapolated; they hardly matter to a force that is represented as it
+        // begins, unless they vibrate
+        let mut held = Held::default();
+        let longer = |j: &i32| {
+            forecast.impulse(*j) <= EXTRAPOLATED * allowed && forecast.follows_vibrations(*j, tolerance, &mut held)
+        };
+        (J_MIN..level).rev().take_while(longer).last().unwrap_or(level)
+    }
+
+    /// Step exponent of the longest panel within the time constant of a contact's dashpot. At the begin of a branch the rate is not yet
+    /// the one to which a strong dashpot forces it. On longer panels the force would oscillate, and seem to end.
+    pub(super) fn level_of_relaxation(&mut self, c: usize) -> i32 {
+        let state = &self.states[c];
+        let Some(touch) = state.touch() else { return J_MIN };
+        self.counts.law_evaluations += 1;
+        let drag = self.law(c).force(&touch.branch, state.overlap, state.rate).per_rate_n_s_m.abs();
+        self.tables.steps.level_within((drag * self.system.links[c].mobility).recip())
+    }
+}
+
+/// The first step exponent from `from` on for which this holds, or else [`J_MAX`]. It holds for all shorter steps, too: they are tried
+/// further and further ahead, and the last gap is halved.
+fn first_level_where(from: i32, holds: impl Fn(i32) -> bool) -> i32 {
+    let (mut coarse, mut fine, mut ahead) = (from, from, 1);
+    while fine < J_MAX && !holds(fine) {
+        (coarse, fine, ahead) = (fine + 1, (fine + ahead).min(J_MAX), 2 * ahead);
+    }
+    while coarse < fine {
+        let middle = coarse + (fine - coarse) / 2;
+        if holds(middle) { fine = middle } else { coarse = middle + 1 }
+    }
+    fine
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_level_is_found_wherever_it_is() {
+        for first in J_MIN..=J_MAX + 1 {
+            assert_eq!(first_level_where(J_MIN, |j| j >= first), first.min(J_MAX));
+            assert_eq!(first_level_where(7, |j| j >= first), first.clamp(7, J_MAX));
+        }
+    }
+}
