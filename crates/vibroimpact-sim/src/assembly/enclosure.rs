@@ -233,7 +233,7 @@ impl FlightBounds {
     }
 
     /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of all but
-    /// the elastic modes, relative to the overlap of touch. `bend` bounds the second derivative by the loads (m/s^2), and `noise`
+    /// the elastic modes, relative to the overlap of touch. `bend` bounds the second derivative by the loads (m/s^2), and `rounding`
     /// is the rounding of the overlap (m) and of its rate (m/s): bodies that approach no faster than that without vibrating move
     /// along together.
     #[inline(always)]
@@ -242,10 +242,10 @@ impl FlightBounds {
         link: &Link,
         (mut overlap, mut rate): (f64, f64),
         bend: f64,
-        noise: impl Fn() -> (f64, f64),
+        rounding: impl Fn() -> (f64, f64),
         (amplitude, mode_rate): (&[f64], &[f64]),
     ) -> f64 {
-        let (mut next, mut best, mut rounding) = (0, 0.0f64, None);
+        let (mut next, mut best, mut known) = (0, 0.0f64, None);
         let row = link.in_a_row.as_ref().map(|Span { modes, psi }| {
             let (a, b) = (&amplitude[modes.clone()], &mode_rate[modes.clone()]);
             (psi.as_slice(), a, b)
@@ -266,14 +266,14 @@ impl FlightBounds {
             let mut separation = -overlap - above;
             // surfaces that have just parted overlap by rounding, within which the modes above may move, too
             if separation < 0.0 && (above == 0.0 || self.uses == 0) {
-                let (noise, _) = *rounding.get_or_insert_with(&noise);
-                if above <= noise && separation >= -noise {
+                let (rounding, _) = *known.get_or_insert_with(&rounding);
+                if above <= rounding && separation >= -rounding {
                     separation = 0.0;
                 }
             }
             if above == 0.0 && curvature == 0.0 && separation >= 0.0 && rate > 0.0 {
-                let (_, rate_noise) = *rounding.get_or_insert_with(&noise);
-                if rate <= rate_noise {
+                let (_, rate_rounding) = *known.get_or_insert_with(&rounding);
+                if rate <= rate_rounding {
                     return f64::INFINITY;
                 }
             }
@@ -298,19 +298,19 @@ fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
 
 /// The first time in `[0, window]` at which an overlap with this power series, approached from below, rises to zero, and
 /// `true`; or a time up to which it does not, and `false`. Its second derivative is at most `curvature`. Overlaps within
-/// `noise`, and within the rounding of the series, count as zero, and so do rates within `rate_noise`.
+/// `rounding`, and within the rounding of the series, count as zero, and so do rates within `rate_rounding`.
 pub(crate) fn first_closing(
     series: &[f64; TAYLOR],
     curvature: f64,
     window: f64,
-    (noise, rate_noise): (f64, f64),
+    (rounding, rate_rounding): (f64, f64),
 ) -> (f64, bool) {
     const ITERATIONS_MAX: usize = 10_000;
     // after a grazing touch the surfaces separate so soon that the overlap never exceeds rounding
-    let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
+    let least = if curvature > 0.0 { (rounding / curvature).sqrt() } else { 0.0 };
     let mut t = 0.0;
-    if series[0] >= -noise && series[1].abs() <= rate_noise {
-        match first_difference(series, window, (noise, rate_noise)) {
+    if series[0] >= -rounding && series[1].abs() <= rate_rounding {
+        match first_difference(series, window, (rounding, rate_rounding)) {
             None => return (window, false),
             Some((parted, overlap)) if overlap < 0.0 => t = parted,
             Some((closed, _)) => return (closed, true),
@@ -319,9 +319,9 @@ pub(crate) fn first_closing(
     for _ in 0..ITERATIONS_MAX {
         let [overlap, rate, bend] = value(series, t);
         let size = series.iter().rev().fold(0.0, |sum, term| sum * t + term.abs());
-        let noise = noise + 4.0 * f64::EPSILON * size;
-        let meets = overlap >= -noise && rate > 0.0;
-        let grazes = meets && rate * rate <= -2.0 * noise * bend;
+        let rounding = rounding + 4.0 * f64::EPSILON * size;
+        let meets = overlap >= -rounding && rate > 0.0;
+        let grazes = meets && rate * rate <= -2.0 * rounding * bend;
         if meets && !grazes {
             return (t, true);
         }
@@ -349,13 +349,13 @@ pub(crate) fn first_closing(
 pub(crate) fn first_difference(
     series: &[f64; TAYLOR],
     window: f64,
-    (noise, rate_noise): (f64, f64),
+    (rounding, rate_rounding): (f64, f64),
 ) -> Option<(f64, f64)> {
     let at = |k: u32| {
         let t = window * 0.5f64.powi(k as i32);
         (t, value(series, t)[0])
     };
-    (0..f64::MANTISSA_DIGITS).rev().map(at).find(|(t, overlap)| overlap.abs() > noise + rate_noise * t)
+    (0..f64::MANTISSA_DIGITS).rev().map(at).find(|(t, overlap)| overlap.abs() > rounding + rate_rounding * t)
 }
 
 /// Bound on the second derivative of the overlap of a contact by the loads within `lasting_s` (m/s^2).

@@ -36,7 +36,7 @@ pub(crate) struct EventFunction {
     /// Bounds on the error of the polynomial, of its slope along the panel (panel length 1), and of its second derivative.
     pub rho: [f64; 3],
     /// Rounding of its values.
-    pub noise: f64,
+    pub rounding: f64,
     /// Bounds on the deviation of value and slope from zero at the beginning of the branch.
     pub residue: f64,
     pub slope_residue: f64,
@@ -67,12 +67,12 @@ impl EventFunction {
     /// `beginning` is evaluated only if the function begins at zero.
     pub fn verdict(&self, beginning: impl FnOnce() -> Beginning) -> Verdict {
         // the polynomial passes through the start, where the only error is rounding
-        let known = self.noise + self.residue;
+        let known = self.rounding + self.residue;
         if self.start < -known {
             return Verdict::Meets(0.0);
         }
-        if self.start > self.noise {
-            let verdict = Question::new(&with(self.start, &self.nodal), self.rho[0], self.noise, false).verdict();
+        if self.start > self.rounding {
+            let verdict = Question::new(&with(self.start, &self.nodal), self.rho[0], self.rounding, false).verdict();
             // a function that does not begin at zero need not end where it begins, though it may be small and fall
             let apart = verdict == Verdict::Clear || matches!(verdict, Verdict::Meets(place) if place > FINEST);
             if self.start > known || apart {
@@ -87,19 +87,19 @@ impl EventFunction {
         let [_, rho_slope, rho_bend] = self.rho;
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
-        let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
+        let rounding = 2.0 * self.rounding / BASIS.nodes[0] + self.slope_residue;
         let Beginning { slope, bend, unresolved } = beginning();
-        let begins_level = slope.abs() <= self.noise + self.slope_residue;
+        let begins_level = slope.abs() <= self.rounding + self.slope_residue;
         match bend {
             // the slope at the start is better known than those that are quotients
             Some(bend) if begins_level => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
-                let noise = noise / BASIS.nodes[0] + unresolved;
-                Question::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, noise, true)
+                let rounding = rounding / BASIS.nodes[0] + unresolved;
+                Question::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, rounding, true)
             }
-            None if begins_level => Question::new(&with(slope, &slopes), rho_slope, noise + unresolved, true),
+            None if begins_level => Question::new(&with(slope, &slopes), rho_slope, rounding + unresolved, true),
             // a shorter panel resolves a slope that is not zero
-            _ => Question::new(&with(slope, &slopes), rho_slope + unresolved, noise, true),
+            _ => Question::new(&with(slope, &slopes), rho_slope + unresolved, rounding, true),
         }
     }
 }
@@ -116,7 +116,7 @@ struct Question {
     bernstein: [f64; POINTS],
     /// Its error bound, and the part of the bound that a shorter panel would not reduce.
     slack: f64,
-    noise: f64,
+    rounding: f64,
     /// Treats the whole error bound as rounding.
     certain: bool,
     /// Whether the event function begins at zero; its value at the start is then known to rounding.
@@ -124,14 +124,14 @@ struct Question {
 }
 
 impl Question {
-    fn new(values: &[f64; POINTS], rho: f64, noise: f64, from_zero: bool) -> Question {
+    fn new(values: &[f64; POINTS], rho: f64, rounding: f64, from_zero: bool) -> Question {
         let mut bernstein = [0.0; POINTS];
         for (column, value) in TO_BERNSTEIN.iter().zip(values) {
             for i in 0..POINTS {
                 bernstein[i] += column[i] * value;
             }
         }
-        Question { bernstein, slack: rho + noise, noise, certain: rho <= noise, from_zero }
+        Question { bernstein, slack: rho + rounding, rounding, certain: rho <= rounding, from_zero }
     }
 
     fn verdict(&self) -> Verdict {
@@ -139,7 +139,7 @@ impl Question {
         if first > self.slack && last > self.slack && self.first_at_or_below(self.slack).is_none() {
             return Verdict::Clear;
         }
-        if self.from_zero && first < -self.noise {
+        if self.from_zero && first < -self.rounding {
             return Verdict::Meets(0.0);
         }
         match self.first_at_or_below(if self.certain { -self.slack } else { 0.0 }) {
@@ -276,7 +276,7 @@ mod tests {
             start: f(0.0),
             nodal: BASIS.nodes.map(f),
             rho: [rho; 3],
-            noise: 1e-14,
+            rounding: 1e-14,
             residue: 0.0,
             slope_residue: 0.0,
         }
@@ -360,7 +360,7 @@ mod tests {
         let begins = |sign: f64, wrong: f64, unresolved: f64, rho: f64| {
             let moved = |s: f64| sign * (s.powf(3.5) - wrong * s * s * (1.0 - 20.0 * s));
             let beginning = Beginning { slope: 0.0, bend: Some(0.0), unresolved };
-            EventFunction { noise: 1e-18, ..function(moved, rho) }.verdict(|| beginning)
+            EventFunction { rounding: 1e-18, ..function(moved, rho) }.verdict(|| beginning)
         };
         assert_eq!(begins(1.0, 1e-4, 1e-3, 0.0), Verdict::Clear);
         assert_eq!(begins(-1.0, 1e-4, 1e-3, 0.0), Verdict::Meets(0.0));

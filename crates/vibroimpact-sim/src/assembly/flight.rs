@@ -44,7 +44,8 @@ impl<'a> March<'a> {
                     + bend_of_loads(&self.loads, c, self.time_s, lasting);
                 let mut series = series_of(self.system, &self.loads, c, self.moment(), window);
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
-                let (time, meets) = first_closing(&series, curvature, window, (self.noise(c), self.rate_noise(c)));
+                let (time, meets) =
+                    first_closing(&series, curvature, window, (self.overlap_rounding(c), self.rate_rounding(c)));
                 if !meets {
                     clear = clear.min(time);
                 } else if first.is_none_or(|(_, earlier)| time < earlier) {

@@ -4,7 +4,8 @@
 use super::enclosure::{Pull, of_panel};
 use super::event::{Beginning, EventFunction, Verdict};
 use super::interpolation::ORDERS;
-use super::motion::{MAGNIFIED, March, Target};
+use super::motion::{March, Target};
+use super::rounding::MAGNIFIED;
 use super::state::Touch;
 use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR, slopes};
 
@@ -58,12 +59,12 @@ impl<'a> March<'a> {
                 );
             }
             let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| force[i].0[Q - 1].abs());
-            let (noise, increase_noise) = self.panel_noise(c, h);
+            let (rounding, increase_rounding) = self.rounding_on_panel(c, h);
             let mut acceleration = None;
             let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
                 let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
-                let noise = noise * per_overlap + MAGNIFIED * increase_noise * per_rate;
+                let rounding = rounding * per_overlap + MAGNIFIED * increase_rounding * per_rate;
                 let function = EventFunction {
                     start,
                     nodal,
@@ -72,7 +73,7 @@ impl<'a> March<'a> {
                         per_overlap * rho[1] + per_rate * (rho[2] + BEYOND[2] * beyond),
                         per_overlap * rho[2],
                     ],
-                    noise,
+                    rounding,
                     residue: 2.0 * (per.0.abs() * residue + per.1.abs() * rate_residue),
                     slope_residue: 2.0 * per_overlap * rate_residue * h,
                 };

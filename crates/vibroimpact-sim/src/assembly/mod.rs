@@ -78,6 +78,7 @@ mod record;
 mod reliability;
 pub(crate) mod responses;
 mod rest;
+mod rounding;
 mod search;
 mod solution;
 pub(crate) mod solve;

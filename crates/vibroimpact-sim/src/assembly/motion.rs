@@ -20,10 +20,6 @@ use contact_models::{ContactLaw, Memory};
 /// A panel is doubled when its error is this many times below the tolerance.
 pub(super) const GROWTH: f64 = 250.0;
 
-/// Interpolation of a rate from the increases of an overlap up to the nodes, as for event functions, magnifies their rounding so many
-/// times.
-pub(super) const MAGNIFIED: f64 = 50.0;
-
 /// On a panel an overlap hardly grows by more than this many times what the rate at its start would add.
 const FARTHER: f64 = 10.0;
 
@@ -215,56 +211,23 @@ impl<'a> March<'a> {
         (self.states[c].reference + (link.sum(&self.amplitude) + shift), link.sum(&self.rate) + shift_rate)
     }
 
-    /// Rounding of an overlap that is computed as a difference of positions (m).
-    pub(super) fn noise(&self, c: usize) -> f64 {
-        self.rounding(c, &self.amplitude, self.states[c].reference.abs())
-    }
-
-    /// The same of its rate (m/s).
-    pub(super) fn rate_noise(&self, c: usize) -> f64 {
-        self.rounding(c, &self.rate, 0.0)
-    }
-
-    /// Rounding of a sum over the modes of a contact and another term.
-    fn rounding(&self, c: usize, values: &[f64], beside: f64) -> f64 {
-        4.0 * f64::EPSILON * (self.system.links[c].size(values) + beside)
-    }
-
-    /// Rounding of an overlap as it is summed up over a panel of `h`, and of its increase alone (m).
-    pub(super) fn panel_noise(&self, c: usize, h: f64) -> (f64, f64) {
-        let of = |Span { modes, psi }: &Span| {
-            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
-            let [sum] = vectorized(
-                #[inline(always)]
-                || {
-                    sum_over(
-                        [psi, omega, a, b],
-                        #[inline(always)]
-                        |[psi, omega, a, b]| {
-                            let turned = omega * h;
-                            [psi.abs() * ((if turned < 1.0 { turned } else { 1.0 }) * a.abs() + h * b.abs())]
-                        },
-                    )
-                },
-            );
-            sum
-        };
-        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
-        let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
-        // the relative accuracy of the motion that corresponds to the contact's momentum is the same
-        let increase = 4.0 * f64::EPSILON * moved.max(self.states[c].speed_m_s() * h);
-        (tracked + increase + 4.0 * f64::EPSILON * self.states[c].overlap.abs(), increase)
-    }
-
-    /// Rounding of the rate of an overlap anywhere on a panel (m/s): vibrations turn displacement into rate.
-    fn moving_noise(&self, c: usize) -> f64 {
-        let of = |Span { modes, psi }: &Span| {
-            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
-            let [sum] = sum_over([psi, omega, a, b], |[psi, omega, a, b]| [psi.abs() * (omega * a.abs() + b.abs())]);
-            sum
-        };
-        let moving: f64 = self.system.links[c].spans.iter().map(of).sum();
-        4.0 * f64::EPSILON * moving.max(self.states[c].speed_m_s())
+    /// For each body of a contact, the sums over its modes of some terms in their weight, frequency, amplitude and rate.
+    #[inline(always)]
+    pub(super) fn sums<const N: usize>(
+        &self,
+        c: usize,
+        terms: impl Fn([f64; 4]) -> [f64; N],
+    ) -> impl Iterator<Item = [f64; N]> {
+        self.system.links[c].spans.iter().map(
+            #[inline(always)]
+            move |Span { modes, psi }| {
+                let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+                vectorized(
+                    #[inline(always)]
+                    || sum_over([psi, omega, a, b], &terms),
+                )
+            },
+        )
     }
 
     /// Allowed error of the impulse on a panel (N s): a part of the exchanged momentum, but at most the impulse that would give the
@@ -286,7 +249,7 @@ impl<'a> March<'a> {
             Some(touch) if touch.force_by_rate && error * GROWTH >= 1.0 => {
                 let reached = self.states[c].overlap + FARTHER * h * self.states[c].rate.abs();
                 let drag = self.law(c).force(&touch.branch, overlap.min(reached), rate).per_rate_n_s_m.abs();
-                (force_n - drag * self.moving_noise(c)).max(0.0) * h / tolerance
+                (force_n - drag * self.rate_rounding_on_panel(c)).max(0.0) * h / tolerance
             }
             _ => error,
         }

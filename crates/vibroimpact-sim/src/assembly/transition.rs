@@ -44,18 +44,19 @@ impl<'a> March<'a> {
         }
         // compressed contacts first, and the fastest first of these and of the others, since their speed is the scale for contacts
         // that touch without speed
-        let is_pressed: Vec<bool> = (0..self.states.len()).map(|c| self.states[c].overlap > self.noise(c)).collect();
+        let is_pressed: Vec<bool> =
+            (0..self.states.len()).map(|c| self.states[c].overlap > self.overlap_rounding(c)).collect();
         let mut order: Vec<usize> = (0..self.states.len()).collect();
         order.sort_by(|&one, &other| {
             let rates = self.states[other].rate.total_cmp(&self.states[one].rate);
             is_pressed[other].cmp(&is_pressed[one]).then(rates)
         });
         for c in order {
-            let noise = self.noise(c);
-            if self.states[c].overlap > noise {
+            let rounding = self.overlap_rounding(c);
+            if self.states[c].overlap > rounding {
                 self.touch(c, self.states[c].overlap);
                 self.pass_boundaries(c);
-            } else if self.states[c].overlap >= -noise && self.system.links[c].mobility > 0.0 && self.may_press(c) {
+            } else if self.states[c].overlap >= -rounding && self.system.links[c].mobility > 0.0 && self.may_press(c) {
                 // without rigid-body motion the surfaces vibrate, and their speed now is only a part of the scale of a vibration
                 if self.system.links[c].rigid.is_empty() && self.states[c].inverse_mass > 0.0 {
                     let vibration = self.speed_of_displaced_modes(c) / self.states[c].inverse_mass;
@@ -88,7 +89,7 @@ impl<'a> March<'a> {
         let reach = if reach.is_finite() { reach } else { 1.0 };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), reach);
         series[0] = 0.0;
-        match first_difference(&series, reach, (self.noise(c), self.rate_noise(c))) {
+        match first_difference(&series, reach, (self.overlap_rounding(c), self.rate_rounding(c))) {
             Some((_, overlap)) => overlap > 0.0,
             None => !self.loads.is_empty() || self.states.len() > 1,
         }

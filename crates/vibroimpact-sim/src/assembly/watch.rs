@@ -3,9 +3,8 @@
 use super::enclosure::{FlightBounds, bend_of_loads};
 use super::motion::March;
 use super::state::Phase;
-use super::system::Span;
 use crate::panel::legendre::Legendre;
-use crate::panel::vector::{sum_over, vectorized};
+use crate::panel::vector::vectorized;
 
 impl<'a> March<'a> {
     /// Lists the closed contacts and returns their number.
@@ -43,22 +42,16 @@ impl<'a> March<'a> {
     fn may_close(&self, c: usize, h: f64, (closed, force): (&[usize], &[Legendre])) -> bool {
         let (links, state) = (&self.system.links, &self.states[c]);
         let (mut overlap, mut reach, mut size) = (self.loads.overlap(c, self.time_s).0, 0.0, state.reference.abs());
-        for Span { modes, psi } in &links[c].spans {
-            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
-            let [here, moved, most] = vectorized(
-                #[inline(always)]
-                || {
-                    sum_over(
-                        [psi, omega, a, b],
-                        #[inline(always)]
-                        |[psi, omega, a, b]| {
-                            let turned = omega * h;
-                            let turned = if turned < 2.0 { turned } else { 2.0 };
-                            [psi * a, psi.abs() * (turned * a.abs() + h * b.abs()), (psi * a).abs()]
-                        },
-                    )
-                },
-            );
+        let sums = self.sums(
+            c,
+            #[inline(always)]
+            |[psi, omega, a, b]| {
+                let turned = omega * h;
+                let turned = if turned < 2.0 { turned } else { 2.0 };
+                [psi * a, psi.abs() * (turned * a.abs() + h * b.abs()), (psi * a).abs()]
+            },
+        );
+        for [here, moved, most] in sums {
             overlap += here;
             reach += moved;
             size += most;
@@ -85,7 +78,15 @@ impl<'a> March<'a> {
         let Phase::Open { bounds: Some(bounds), .. } = &self.states[c].phase else { return };
         let safe = vectorized(
             #[inline(always)]
-            || bounds.safe_time(link, (overlap, rate), bend, || (self.noise(c), self.rate_noise(c)), motion),
+            || {
+                bounds.safe_time(
+                    link,
+                    (overlap, rate),
+                    bend,
+                    || (self.overlap_rounding(c), self.rate_rounding(c)),
+                    motion,
+                )
+            },
         );
         let until = self.time_s + safe;
         if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
