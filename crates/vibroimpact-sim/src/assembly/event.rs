@@ -72,7 +72,7 @@ impl EventFunction {
             return Verdict::Meets(0.0);
         }
         if self.start > self.rounding {
-            let verdict = Question::new(&with(self.start, &self.nodal), self.rho[0], self.rounding, false).verdict();
+            let verdict = Tested::new(&with(self.start, &self.nodal), self.rho[0], self.rounding, false).verdict();
             // a function that does not begin at zero need not end where it begins, though it may be small and fall
             let apart = verdict == Verdict::Clear || matches!(verdict, Verdict::Meets(place) if place > FINEST);
             if self.start > known || apart {
@@ -83,7 +83,7 @@ impl EventFunction {
     }
 
     /// Of a function that begins at zero, the quotient that has to stay positive.
-    fn quotient(&self, beginning: impl FnOnce() -> Beginning) -> Question {
+    fn quotient(&self, beginning: impl FnOnce() -> Beginning) -> Tested {
         let [_, rho_slope, rho_bend] = self.rho;
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
@@ -95,11 +95,11 @@ impl EventFunction {
             Some(bend) if begins_level => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
                 let rounding = rounding / BASIS.nodes[0] + unresolved;
-                Question::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, rounding, true)
+                Tested::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, rounding, true)
             }
-            None if begins_level => Question::new(&with(slope, &slopes), rho_slope, rounding + unresolved, true),
+            None if begins_level => Tested::new(&with(slope, &slopes), rho_slope, rounding + unresolved, true),
             // a shorter panel resolves a slope that is not zero
-            _ => Question::new(&with(slope, &slopes), rho_slope + unresolved, rounding, true),
+            _ => Tested::new(&with(slope, &slopes), rho_slope + unresolved, rounding, true),
         }
     }
 }
@@ -112,7 +112,7 @@ fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
 }
 
 /// A polynomial that is tested for being positive.
-struct Question {
+struct Tested {
     bernstein: [f64; POINTS],
     /// Its error bound, and the part of the bound that a shorter panel would not reduce.
     slack: f64,
@@ -123,15 +123,15 @@ struct Question {
     from_zero: bool,
 }
 
-impl Question {
-    fn new(values: &[f64; POINTS], rho: f64, rounding: f64, from_zero: bool) -> Question {
+impl Tested {
+    fn new(values: &[f64; POINTS], rho: f64, rounding: f64, from_zero: bool) -> Tested {
         let mut bernstein = [0.0; POINTS];
         for (column, value) in TO_BERNSTEIN.iter().zip(values) {
             for i in 0..POINTS {
                 bernstein[i] += column[i] * value;
             }
         }
-        Question { bernstein, slack: rho + rounding, rounding, certain: rho <= rounding, from_zero }
+        Tested { bernstein, slack: rho + rounding, rounding, certain: rho <= rounding, from_zero }
     }
 
     fn verdict(&self) -> Verdict {

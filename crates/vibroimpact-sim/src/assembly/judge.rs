@@ -26,8 +26,42 @@ pub(super) enum Judgement {
     Meets(Target, f64),
 }
 
+/// What is not known of an overlap on a panel, and therefore not of its event functions.
+struct Uncertainty {
+    h: f64,
+    /// Bounds on what the polynomial misses of vibrations, and the increase of the overlap by the last coefficient of the forces.
+    rho: [f64; ORDERS],
+    beyond: f64,
+    rounding: f64,
+    increase_rounding: f64,
+    residue: f64,
+    rate_residue: f64,
+}
+
+impl Uncertainty {
+    /// The event function with these values and these derivatives by the overlap and by its rate, on both of which it depends linearly.
+    fn of(&self, start: f64, nodal: Nodal, (per_overlap, per_rate): (f64, f64)) -> EventFunction {
+        let Uncertainty { h, rho, beyond, .. } = *self;
+        // along the panel of length 1 the rate of the overlap is its slope over `h`
+        let (by_value, by_rate, by_slope) = (per_overlap.abs(), per_rate.abs(), per_rate.abs() / h);
+        EventFunction {
+            start,
+            nodal,
+            rho: [
+                by_value * (rho[0] + BEYOND[0] * beyond) + by_slope * (rho[1] + BEYOND[1] * beyond),
+                by_value * rho[1] + by_slope * (rho[2] + BEYOND[2] * beyond),
+                by_value * rho[2],
+            ],
+            rounding: self.rounding * by_value + MAGNIFIED * self.increase_rounding * by_slope,
+            residue: 2.0 * (by_value * self.residue + by_rate * self.rate_residue),
+            slope_residue: 2.0 * by_value * self.rate_residue * h,
+        }
+    }
+}
+
 impl<'a> March<'a> {
-    /// Tests all event functions of the contacts on a panel of `h` and finds the first that falls to zero.
+    /// Tests all event functions of the contacts on a panel of `h` and finds the first that falls to zero. The series of a terminal panel
+    /// need no enclosure.
     pub(super) fn judge(
         &mut self,
         h: f64,
@@ -44,48 +78,24 @@ impl<'a> March<'a> {
             pulls.extend(self.pulls_of(&contacts[..closed]));
         }
         for (i, &c) in contacts.iter().enumerate() {
-            let state = &self.states[c];
-            let mut rho = [0.0; ORDERS];
-            if enclosed {
-                let missed = self.tables.missed(self.system, self.tables.steps.level_within(h));
-                rho = of_panel(
-                    self.system,
-                    missed,
-                    &self.loads,
-                    c,
-                    h,
-                    (&self.amplitude, &self.rate),
-                    (&pulls, &mut self.held),
-                );
-            }
+            let rho = if enclosed { self.enclosure(c, h, &pulls) } else { [0.0; ORDERS] };
             let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| force[i].0[Q - 1].abs());
-            let (rounding, increase_rounding) = self.rounding_on_panel(c, h);
+            let uncertainty = self.uncertainty(c, h, rho, beyond);
+            let state = &self.states[c];
             let mut acceleration = None;
-            let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
-            let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
-                let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
-                let rounding = rounding * per_overlap + MAGNIFIED * increase_rounding * per_rate;
-                let function = EventFunction {
-                    start,
-                    nodal,
-                    rho: [
-                        per_overlap * (rho[0] + BEYOND[0] * beyond) + per_rate * (rho[1] + BEYOND[1] * beyond),
-                        per_overlap * rho[1] + per_rate * (rho[2] + BEYOND[2] * beyond),
-                        per_overlap * rho[2],
-                    ],
-                    rounding,
-                    residue: 2.0 * (per.0.abs() * residue + per.1.abs() * rate_residue),
-                    slope_residue: 2.0 * per_overlap * rate_residue * h,
-                };
+            let mut test = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
                 let beginning = || {
                     let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
                     Beginning {
                         slope: (per.0 * state.rate + per.1 * acceleration) * h,
                         bend: (per.1 == 0.0).then_some(per.0 * acceleration * h * h),
-                        unresolved: (per_overlap + per_rate) * h * h * self.unresolved(c, &contacts[..closed], force),
+                        unresolved: (per.0.abs() + per.1.abs() / h)
+                            * h
+                            * h
+                            * self.unresolved(c, &contacts[..closed], force),
                     }
                 };
-                match function.verdict(beginning) {
+                match uncertainty.of(start, nodal, per).verdict(beginning) {
                     Verdict::Clear => {}
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {
@@ -101,13 +111,13 @@ impl<'a> March<'a> {
                     for (which, boundary) in state.ends.iter().enumerate() {
                         let nodal = std::array::from_fn(|n| boundary.margin(state.overlap + moved[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
-                        ask(which, start, nodal, (boundary.per_compression, boundary.per_rate));
+                        test(which, start, nodal, (boundary.per_compression, boundary.per_rate));
                     }
                 }
                 None => {
                     let touch_m = state.touch_m();
                     let nodal = moved[i].map(|moved| touch_m - (state.overlap + moved));
-                    ask(0, touch_m - state.overlap, nodal, (-1.0, 0.0));
+                    test(0, touch_m - state.overlap, nodal, (-1.0, 0.0));
                 }
             }
         }
@@ -117,6 +127,20 @@ impl<'a> March<'a> {
             None if doubtful => Judgement::Doubtful,
             None => Judgement::Clear,
         }
+    }
+
+    /// Bounds on what the polynomial of an overlap on a panel of `2^-j` s misses of the vibrations of the modes.
+    fn enclosure(&mut self, c: usize, h: f64, pulls: &[Pull]) -> [f64; ORDERS] {
+        let missed = self.tables.missed(self.system, self.tables.steps.level_within(h));
+        let motion = (self.amplitude.as_slice(), self.rate.as_slice());
+        of_panel(self.system, missed, &self.loads, c, h, motion, (pulls, &mut self.held))
+    }
+
+    fn uncertainty(&self, c: usize, h: f64, rho: [f64; ORDERS], beyond: f64) -> Uncertainty {
+        let (rounding, increase_rounding) = self.rounding_on_panel(c, h);
+        let (residue, rate_residue) =
+            self.states[c].touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
+        Uncertainty { h, rho, beyond, rounding, increase_rounding, residue, rate_residue }
     }
 
     /// Value of an event function at the end of a terminal panel, and its rate.
