@@ -57,7 +57,7 @@ impl<'a> March<'a> {
                     self.coast(time, false);
                     let (_, rate) = self.overlap_of_modes(c);
                     self.states[c].rate = rate;
-                    self.touch(c, 0.0);
+                    self.close(c, 0.0);
                 }
                 _ if clear < window => self.coast(clear, false),
                 _ if by_level => self.rotate(near),

@@ -108,7 +108,7 @@ impl<'a> March<'a> {
             match state.touch() {
                 Some(touch) => {
                     let rates = if touch.ends_by_rate { slopes(0.0, &moved[i], h) } else { [0.0; Q] };
-                    for (which, boundary) in state.ends.iter().enumerate() {
+                    for (which, boundary) in state.boundaries.iter().enumerate() {
                         let nodal = std::array::from_fn(|n| boundary.margin(state.overlap + moved[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
                         test(which, start, nodal, (boundary.per_compression, boundary.per_rate));
@@ -146,7 +146,7 @@ impl<'a> March<'a> {
     /// Value of an event function at the end of a terminal panel, and its rate.
     pub(super) fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
         let state = &self.states[target.contact];
-        match state.ends.get(target.boundary).filter(|_| state.is_closed()) {
+        match state.boundaries.get(target.boundary).filter(|_| state.is_closed()) {
             Some(boundary) => {
                 let slope = boundary.per_compression * rate + boundary.per_rate * acceleration;
                 (boundary.margin(overlap, rate), slope)

@@ -4,7 +4,7 @@
 use super::collocate::{Collocated, Unknown};
 use super::first_panel::SINGULAR;
 use super::judge::Judgement;
-use super::motion::{Horizon, March, Target};
+use super::motion::{ExpectedEvent, March, Target};
 use super::terminal::{Landed, Window};
 use super::trial::{NEWTON_SHARE, Trial};
 use crate::panel::ends::Ends;
@@ -17,7 +17,7 @@ const LANDING_WEIGHTED: f64 = 5.0;
 /// An event function has fallen to zero where it is smaller than this part of its largest value.
 const MET: f64 = 1e-3;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
-const CARRIED: f64 = 0.05;
+const EXTRAPOLATED: f64 = 0.05;
 
 /// Length of a terminal panel with the allowed error, if the error with this length is too large by this factor.
 fn shorter(length: f64, excess: f64, ends: Ends) -> f64 {
@@ -25,9 +25,45 @@ fn shorter(length: f64, excess: f64, ends: Ends) -> f64 {
     0.9 * length * excess.powf(-1.0 / power).max(1e-3)
 }
 
+/// Where the zero of an event function lies: above the longest length at which it was positive, below the shortest at which it was not.
+struct Bracket {
+    low: (f64, f64),
+    high: Option<(f64, f64)>,
+    /// Whether the last length was too short.
+    last_short: Option<bool>,
+}
+
+impl Bracket {
+    fn from_start(value: f64) -> Bracket {
+        Bracket { low: (0.0, value), high: None, last_short: None }
+    }
+
+    /// Takes in a value of the function. An end that stays a second time is given half its value, so that secants move it (Illinois).
+    fn add(&mut self, length: f64, value: f64) {
+        let short = value > 0.0;
+        let stays = self.last_short.replace(short) == Some(short);
+        if short {
+            self.high = self.high.map(|(high, value)| (high, if stays { 0.5 * value } else { value }));
+            self.low = (length, value);
+        } else {
+            self.low.1 *= if stays { 0.5 } else { 1.0 };
+            self.high = Some((length, value));
+        }
+    }
+
+    /// The next length to be tried: of Newton's step, the secant and the middle the first that lies within the bracket. The secant comes
+    /// first if it is preferred, and does not begin at the start.
+    fn next(&self, newton: f64, prefers_secant: bool) -> Option<f64> {
+        let ((low, low_value), (high, high_value)) = (self.low, self.high?);
+        let secant = (low * high_value - high * low_value) / (high_value - low_value);
+        let guesses = if prefers_secant && low > 0.0 { [secant, newton] } else { [newton, secant] };
+        guesses.into_iter().chain([0.5 * (low + high)]).find(|length| *length > low && *length < high)
+    }
+}
+
 impl<'a> March<'a> {
     /// Advances to the next break of the loads or the end, `length` away.
-    pub(super) fn land_at(&mut self, length: f64) {
+    pub(super) fn advance_to_stop(&mut self, length: f64) {
         let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length, |c| self.begins(c));
         let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
@@ -35,7 +71,7 @@ impl<'a> March<'a> {
         };
         self.watch_window(&mut window, &mut landed);
         match self.judge_landed(&window, &landed) {
-            Judgement::Meets(target, place) => self.head_for(target, place, length),
+            Judgement::Meets(target, place) => self.expect(target, place, length),
             _ if self.excess(&window, &landed) > 1.0 => self.refine_within(length),
             _ => self.commit_landed(&window, &landed),
         }
@@ -43,7 +79,7 @@ impl<'a> March<'a> {
 
     /// The end of a contact that the compression would reach if its polynomial on the panel of `h` just accepted were continued, by at
     /// most one panel, and no farther than a terminal panel reaches.
-    pub(super) fn look_ahead(&self, h: f64, trial: &Trial) -> Option<Horizon> {
+    pub(super) fn look_ahead(&self, h: f64, trial: &Trial) -> Option<ExpectedEvent> {
         let reach = (self.reach / h).min(1.0);
         let of = |(i, &contact): (usize, &usize)| {
             let state = &self.states[contact];
@@ -55,7 +91,7 @@ impl<'a> March<'a> {
             if !self.ends_at(target).ends {
                 return None;
             }
-            let end = &state.ends[boundary];
+            let end = &state.boundaries[boundary];
             let compression = Legendre::through(&trial.solved[i].compression);
             let places = std::array::from_fn(|k| reach * (k + 1) as f64 / Q as f64);
             let margins = compression.at_each(&places.map(|place| 1.0 + place)).map(|at| end.margin(at, 0.0));
@@ -65,20 +101,20 @@ impl<'a> March<'a> {
                 None => (0.0, end.margin(state.overlap, 0.0)),
             };
             let place = from + (places[after] - from) * before / (before - margins[after]);
-            Some(Horizon { target, at_s: self.time_s + place * h })
+            Some(ExpectedEvent { target, at_s: self.time_s + place * h })
         };
         trial.contacts[..trial.closed].iter().enumerate().find_map(of)
     }
 
     /// Longest terminal panel that accuracy allows before an event of the compression that is expected after `left`, from the law
     /// along a parabola to the event.
-    pub(super) fn foreseen(&mut self, target: Target, left: f64) -> f64 {
+    pub(super) fn accurate_length(&mut self, target: Target, left: f64) -> f64 {
         let state = &self.states[target.contact];
         let Some((touch, (force, _))) = state.touch().and_then(|touch| Some((touch, touch.previous?))) else {
             return f64::INFINITY;
         };
         let (law, tolerance) = (self.law(target.contact), self.impulse_tolerance(target.contact));
-        let Some(boundary) = state.ends.get(target.boundary) else { return f64::INFINITY };
+        let Some(boundary) = state.boundaries.get(target.boundary) else { return f64::INFINITY };
         if boundary.per_rate != 0.0 || SINGULAR * force.at(1.0) * left <= 0.1 * tolerance {
             return f64::INFINITY;
         }
@@ -95,12 +131,12 @@ impl<'a> March<'a> {
     }
 
     /// Advances to the event, which is expected after `expected` seconds and at most `longest` away.
-    pub(super) fn land(&mut self, target: Target, expected: f64, longest: f64) {
-        let mut window = self.window(Some(target.contact), (1.0 + CARRIED) * longest);
+    pub(super) fn advance_to_event(&mut self, target: Target, expected: f64, longest: f64) {
+        let mut window = self.window(Some(target.contact), (1.0 + EXTRAPOLATED) * longest);
         let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
-        let Some(mut landed) = self.locate(&window, target, at, expected, longest) else {
+        let Some(mut landed) = self.panel_to_event(&window, target, at, expected, longest) else {
             // the event is further away than expected: continue until a panel meets it again
             return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
@@ -109,7 +145,7 @@ impl<'a> March<'a> {
         // this panel may have passed over an earlier zero of the same event function, or over another event
         match self.judge_landed(&window, &landed) {
             Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
-                self.head_for(other, place, length);
+                self.expect(other, place, length);
                 // a closer guess avoids finding the same end again
                 self.level += 1;
                 return;
@@ -118,8 +154,8 @@ impl<'a> March<'a> {
         }
         let excess = self.excess(&window, &landed);
         if excess > 1.0 {
-            self.landing = shorter(length, excess, self.ends_at(target));
-            self.horizon = Some(Horizon { target, at_s: self.time_s + length });
+            self.longest_terminal = shorter(length, excess, self.ends_at(target));
+            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }
         self.commit_landed(&window, &landed);
@@ -127,7 +163,14 @@ impl<'a> March<'a> {
     }
 
     /// The terminal panel of at most `longest` whose end is the event.
-    fn locate(&mut self, window: &Window, target: Target, at: usize, expected: f64, longest: f64) -> Option<Landed> {
+    fn panel_to_event(
+        &mut self,
+        window: &Window,
+        target: Target,
+        at: usize,
+        expected: f64,
+        longest: f64,
+    ) -> Option<Landed> {
         let state = &self.states[target.contact];
         let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
@@ -135,15 +178,13 @@ impl<'a> March<'a> {
         let ends = self.ends_at(target);
         let of = |c: usize| if c == target.contact { ends } else { Ends::SMOOTH };
         let mut unknowns = self.unknowns_of(window, length, of);
-        let (mut low, mut low_margin, mut largest) = (0.0, initial, initial);
-        let mut high: Option<(f64, f64)> = None;
-        let mut side = 0;
+        let (mut bracket, mut largest) = (Bracket::from_start(initial), initial);
         for _ in 0..60 {
             let landed = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts)?;
             for (unknown, solved) in unknowns.iter_mut().zip(&landed.solved) {
                 unknown.guess = solved.force;
             }
-            if let Some(landed) = self.carried(window, target, at, &landed) {
+            if let Some(landed) = self.adjusted(window, target, at, &landed) {
                 return (landed.length <= longest).then_some(landed);
             }
             let (margin, slope) = self.margin(target, landed.end[at]);
@@ -151,50 +192,31 @@ impl<'a> March<'a> {
                 return Some(landed);
             }
             largest = largest.max(margin.abs());
-            if margin > 0.0 {
-                if let Some((_, high_margin)) = &mut high
-                    && side > 0
-                {
-                    *high_margin *= 0.5;
-                }
-                (low, low_margin, side) = (length, margin, 1);
-            } else {
-                if side < 0 {
-                    low_margin *= 0.5;
-                }
-                (high, side) = (Some((length, margin)), -1);
-            }
-            let next = match high {
+            bracket.add(length, margin);
+            let newton = length - margin / slope;
+            length = match bracket.high {
                 None if length >= longest => return None,
                 None => {
                     // the guess was good if the event is near
-                    let newton = length - margin / slope;
-                    let near = newton > length && newton <= (1.0 + CARRIED) * length;
+                    let near = newton > length && newton <= (1.0 + EXTRAPOLATED) * length;
                     if near { newton } else { 2.0 * length }.min(longest)
                 }
-                Some((high, high_margin)) => {
-                    let newton = length - margin / slope;
-                    let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
-                    let within = |x: &f64| *x > low && *x < high;
-                    // while forces are stretched with the panel, the rate at its end is not the slope of the margin
-                    let guesses = if ends.ends && low > 0.0 { [secant, newton] } else { [newton, secant] };
-                    match guesses.into_iter().chain([0.5 * (low + high)]).find(within) {
-                        // the motion after the event does not depend on these last digits of the time
-                        Some(next) if (next - length).abs() > 1e-13 * high => next,
-                        // a function that jumps over zero depends on where Newton's method ends: the panel is too long
-                        _ => return (margin.abs() <= MET * largest).then_some(landed),
-                    }
-                }
+                // while forces are stretched with the panel, the rate at its end is not the slope of the event function
+                Some((high, _)) => match bracket.next(newton, ends.ends) {
+                    // the motion after the event does not depend on these last digits of the time
+                    Some(next) if (next - length).abs() > 1e-13 * high => next,
+                    // a function that jumps over zero depends on where Newton's method ends: the panel is too long
+                    _ => return (margin.abs() <= MET * largest).then_some(landed),
+                },
             };
-            length = next;
         }
         None
     }
 
     /// The forces of a terminal panel, truncated, extrapolated or stretched to the point where the motion under them meets the event,
     /// if that point is so close that the laws hold there as they do at the nodes.
-    fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
-        let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
+    fn adjusted(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
+        let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + EXTRAPOLATED) * from.length;
         let (mut length, mut end) = (from.length, from.end[at]);
         // a force that is stretched by a part changes by that part
         let stretched = from.solved.get(at).filter(|solved| solved.ends.ends);
@@ -212,7 +234,7 @@ impl<'a> March<'a> {
             }
             // the next of Newton's steps would be the square of this one, unless forces are stretched
             if (next - length).abs() <= near * next {
-                return Some(window.carried(from, next));
+                return Some(window.with_length(from, next));
             }
             (length, end) = (next, window.end(from, at, next));
         }
@@ -264,12 +286,12 @@ impl<'a> March<'a> {
         if ends { Ends { ends, ..self.begins(contact) } } else { Ends::SMOOTH }
     }
 
-    fn head_for(&mut self, target: Target, place: f64, length: f64) {
+    fn expect(&mut self, target: Target, place: f64, length: f64) {
         self.counts.rejected_steps += 1;
         if place == 0.0 {
             self.transition(target);
         } else {
-            self.horizon = Some(Horizon { target, at_s: self.time_s + place * length });
+            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + place * length });
         }
     }
 
@@ -298,7 +320,7 @@ impl<'a> March<'a> {
         }
         window.advance(self.system, landed, &mut self.amplitude, &mut self.rate);
         self.pass(landed.length);
-        self.book(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
+        self.accept(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
             (landed.end[i][0], landed.end[i][1])
         });
     }

@@ -8,7 +8,7 @@
 
 use super::judge::Judgement;
 use super::ledger::Account;
-use super::motion::{GROWTH, Horizon, March};
+use super::motion::{ExpectedEvent, GROWTH, March};
 use super::rest;
 use super::solution::{Outcome, Reason};
 use super::state::State;
@@ -52,7 +52,7 @@ impl<'a> March<'a> {
             }
             if self.time_s >= self.statistics_from_s {
                 self.begin_statistics();
-                self.forget_horizons();
+                self.discard_predictions();
             }
             if !self.states.iter().any(State::is_closed) {
                 if self.fly() {
@@ -85,7 +85,7 @@ impl<'a> March<'a> {
             account.begin_piece(&self.here());
         }
         self.account = account;
-        self.forget_horizons();
+        self.discard_predictions();
     }
 
     /// Whether no contact opens or closes any more, or only contacts below the tolerance do.
@@ -102,40 +102,46 @@ impl<'a> March<'a> {
         now
     }
 
-    /// A step with closed contacts: to a near event, to the end, or by a panel.
+    /// A step with closed contacts: to the expected event, to the next stop, or by a panel of `2^-j` s.
     fn contact(&mut self, trial: &mut Trial<'a>) {
         let (steps, lasting) = (self.tables.steps, self.lasting());
-        // a terminal panel is not better than a panel of similar length
-        let usual = 2.0 * steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
-        // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
-        let weighted = self.horizon.is_some_and(|horizon| self.ends_at(horizon.target).ends);
-        let mut reach = if weighted { self.reach } else { SHORT * self.reach }.min(self.landing).min(usual);
-        if steps != Steps::OF_SECOND && !self.stepped && self.events_at_once == 0 {
-            // a terminal panel from event to event would have the same length, and the same error, in any steps; no step fits between
-            // events that follow each other at once
-            reach = 0.0;
-        }
-        let mut level = self.level;
-        if let Some(Horizon { target, at_s }) = self.horizon {
+        let (mut reach, mut level) = (self.terminal_reach(), self.level);
+        if let Some(ExpectedEvent { target, at_s }) = self.expected {
             let left = (at_s - self.time_s).max(0.0);
-            if left <= reach && self.landing.is_infinite() {
-                self.landing = self.foreseen(target, left);
-                reach = reach.min(self.landing);
+            if left <= reach && self.longest_terminal.is_infinite() {
+                self.longest_terminal = self.accurate_length(target, left);
+                reach = reach.min(self.longest_terminal);
             }
             if left <= reach {
-                self.horizon = None;
-                return self.land(target, left, reach.min(lasting));
+                self.expected = None;
+                return self.advance_to_event(target, left, reach.min(lasting));
             }
             let near = steps.level_within(SHARE * left);
             level = if near > level + SPARSE { near + (near & 1) } else { level.max(near) };
         }
         if steps.step_s(level) > lasting {
             if lasting <= reach {
-                return self.land_at(lasting);
+                return self.advance_to_stop(lasting);
             }
             level = steps.level_within(lasting);
         }
         self.try_panel(level, trial);
+    }
+
+    /// Longest terminal panel that may be tried now (s).
+    fn terminal_reach(&self) -> f64 {
+        let steps = self.tables.steps;
+        if steps != Steps::OF_SECOND && !self.stepped && self.events_at_once == 0 {
+            // a terminal panel from event to event would have the same length, and the same error, in any steps; no step fits between
+            // events that follow each other at once
+            return 0.0;
+        }
+        // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
+        let ends_singular = self.expected.is_some_and(|expected| self.ends_at(expected.target).ends);
+        let reach = if ends_singular { self.reach } else { SHORT * self.reach };
+        // a terminal panel is not better than a panel of similar length
+        let similar = 2.0 * steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
+        reach.min(self.longest_terminal).min(similar)
     }
 
     /// Computes a panel with closed contacts, and accepts or rejects it.
@@ -152,20 +158,13 @@ impl<'a> March<'a> {
         {
             // the event is located once it is near
             self.counts.rejected_steps += 1;
-            self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
+            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + place * h });
             return;
         }
         if judgement == Judgement::Doubtful {
             return self.refine(level + 1);
         }
-        let mut error = 0.0f64;
-        for (i, &c) in contacts[..closed].iter().enumerate() {
-            // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
-            let solved = &trial.solved[i];
-            let (quotient, ends) = (solved.quotient(&trial.force[i]), solved.ends);
-            let missed = (self.force_at(c, trial.end[i]) - quotient.at(1.0)).abs();
-            error = error.max(self.error(c, ends.truncation(&quotient).max(missed), h, trial.end[i]));
-        }
+        let error = self.error_of_trial(h, trial);
         if error.is_nan() || error > 1.0 {
             // the error decreases at least like h^5, except where a polynomial follows a force that begins as t^(3/2): such panels are
             // short enough from the start
@@ -177,12 +176,25 @@ impl<'a> March<'a> {
             return self.transition(target);
         }
         self.commit(level, trial);
-        if self.horizon.is_none() {
-            self.horizon = self.look_ahead(h, trial);
+        if self.expected.is_none() {
+            self.expected = self.look_ahead(h, trial);
         }
         if level == self.level && error * GROWTH < 1.0 {
             self.level = (level - 1).max(J_MIN);
         }
+    }
+
+    /// Error of the forces of a panel relative to the allowed error: by their truncation, and by their defect in the laws at its end, in
+    /// which modes show that turn several times within the panel.
+    fn error_of_trial(&mut self, h: f64, trial: &Trial) -> f64 {
+        let mut error = 0.0f64;
+        for (i, &c) in trial.contacts[..trial.closed].iter().enumerate() {
+            let (solved, end) = (&trial.solved[i], trial.end[i]);
+            let quotient = solved.quotient(&trial.force[i]);
+            let defect = (self.force_at(c, end) - quotient.at(1.0)).abs();
+            error = error.max(self.error(c, solved.ends.truncation(&quotient).max(defect), h, end));
+        }
+        error
     }
 
     /// Whether the run has to stop here. Before it stops during a contact, and once if the run is long, the laws are checked: a law

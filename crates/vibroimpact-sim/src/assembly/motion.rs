@@ -35,7 +35,7 @@ pub(super) struct Target {
 
 /// An event that is expected.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Horizon {
+pub(super) struct ExpectedEvent {
     pub target: Target,
     pub at_s: f64,
 }
@@ -73,9 +73,9 @@ pub(crate) struct March<'a> {
     pub(super) newton: Newton,
     /// Step exponent of the next trial panel.
     pub(super) level: i32,
-    pub(super) horizon: Option<Horizon>,
+    pub(super) expected: Option<ExpectedEvent>,
     /// Longest terminal panel that accuracy allows, from the terminal panels on these branches so far (s).
-    pub(super) landing: f64,
+    pub(super) longest_terminal: f64,
     /// Longest terminal panel for which the power series hold (s).
     pub(super) reach: f64,
     /// Number of accepted panels at the next check for rest.
@@ -114,7 +114,7 @@ impl<'a> March<'a> {
         let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
         let state = |gap: f64| State {
             phase: Phase::Open { memory: Memory::default(), clear_until: 0.0, bounds: None },
-            ends: Vec::new(),
+            boundaries: Vec::new(),
             vanishes: Vec::new(),
             overlap: 0.0,
             rate: 0.0,
@@ -148,8 +148,8 @@ impl<'a> March<'a> {
             held: Held::default(),
             newton: Newton::default(),
             level: J_MIN,
-            horizon: None,
-            landing: f64::INFINITY,
+            expected: None,
+            longest_terminal: f64::INFINITY,
             reach: reach_s(fastest),
             ask_rest_at: 0,
             try_laws_at: 0,
@@ -283,10 +283,11 @@ impl<'a> March<'a> {
         self.states.iter_mut().for_each(State::begin_statistics);
     }
 
-    /// Discards the expected event.
-    pub(super) fn forget_horizons(&mut self) {
-        self.horizon = None;
-        self.landing = f64::INFINITY;
+    /// Discards what was predicted of the motion: the next event, the length of a terminal panel before it, and how long contacts stay
+    /// open.
+    pub(super) fn discard_predictions(&mut self) {
+        self.expected = None;
+        self.longest_terminal = f64::INFINITY;
         for state in &mut self.states {
             if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
                 *clear_until = clear_until.min(self.time_s);

@@ -61,7 +61,7 @@ impl<'a> March<'a> {
             let (overlap, rate) = self.overlap_of_modes(c);
             return Some(Distance { is_closed: false, distance_m: state.touch_m() - overlap, approach_m_s: rate });
         }
-        let end = state.ends.iter().find(|end| end.per_rate == 0.0 && end.per_compression > 0.0)?;
+        let end = state.boundaries.iter().find(|end| end.per_rate == 0.0 && end.per_compression > 0.0)?;
         let distance_m = end.margin(state.overlap, 0.0) / end.per_compression;
         Some(Distance { is_closed: true, distance_m, approach_m_s: -state.rate })
     }

@@ -14,7 +14,7 @@ use contact_models::{Boundary, Branch, Memory};
 pub(crate) struct State {
     pub phase: Phase,
     /// Boundaries of the branch of a closed contact, which do not change along it.
-    pub ends: Vec<Boundary>,
+    pub boundaries: Vec<Boundary>,
     /// Whether the force falls to zero at each of these as `t^(3/2)`.
     pub vanishes: Vec<bool>,
     /// Overlap of the surfaces (m) and its rate (m/s). In a closed contact it is the sum of its increments: a difference of
@@ -124,7 +124,7 @@ impl State {
 
     /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
     /// compression and rate at the nodes and at the end.
-    pub fn book(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, (end, end_rate): (f64, f64)) {
+    pub fn accept(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, (end, end_rate): (f64, f64)) {
         let Collocated { force: nodal, ends, compression, .. } = solved;
         let work_j = self.work_j(&force, compression, end);
         let ends_of_rate = [self.rate, end_rate];

@@ -218,7 +218,7 @@ impl Window {
     }
 
     /// The same forces on another length.
-    pub fn carried(&self, from: &Landed, length: f64) -> Landed {
+    pub fn with_length(&self, from: &Landed, length: f64) -> Landed {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
         let carry = |nodal: &Nodal| Legendre::through(nodal).at_each(&places);
         let carried = |(solved, free): (&Collocated, &Series)| {

@@ -54,7 +54,7 @@ impl<'a> March<'a> {
         for c in order {
             let rounding = self.overlap_rounding(c);
             if self.states[c].overlap > rounding {
-                self.touch(c, self.states[c].overlap);
+                self.close(c, self.states[c].overlap);
                 self.pass_boundaries(c);
             } else if self.states[c].overlap >= -rounding && self.system.links[c].mobility > 0.0 && self.may_press(c) {
                 // without rigid-body motion the surfaces vibrate, and their speed now is only a part of the scale of a vibration
@@ -62,7 +62,7 @@ impl<'a> March<'a> {
                     let vibration = self.speed_of_displaced_modes(c) / self.states[c].inverse_mass;
                     self.states[c].momentum = self.states[c].momentum.max(vibration);
                 }
-                self.touch(c, 0.0);
+                self.close(c, 0.0);
             }
         }
     }
@@ -71,8 +71,8 @@ impl<'a> March<'a> {
     /// pull.
     fn pass_boundaries(&mut self, c: usize) {
         for _ in 0..MOST_PASSED {
-            let State { overlap, rate, ends, .. } = &self.states[c];
-            let Some(boundary) = ends.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
+            let State { overlap, rate, boundaries, .. } = &self.states[c];
+            let Some(boundary) = boundaries.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
             self.transition(Target { contact: c, boundary });
             // unlike a boundary that was located, these may be far behind
             if let Some(touch) = self.states[c].touch_mut() {
@@ -96,7 +96,7 @@ impl<'a> March<'a> {
     }
 
     /// Closes a contact of two surfaces that meet now, with this overlap beyond that of touch.
-    pub(super) fn touch(&mut self, c: usize, beyond: f64) {
+    pub(super) fn close(&mut self, c: usize, beyond: f64) {
         let law = self.law(c);
         let Phase::Open { memory, .. } = self.states[c].phase else { return };
         let (overlap, _) = self.overlap_of_modes(c);
@@ -150,12 +150,12 @@ impl<'a> March<'a> {
 
     fn enter(&mut self, c: usize, branch: Branch) {
         let law = self.law(c);
-        let State { phase, ends, .. } = &mut self.states[c];
-        ends.clear();
-        ends.extend(boundaries(law, &branch));
-        if let Phase::Closed(touch) = phase {
+        let state = &mut self.states[c];
+        state.boundaries.clear();
+        state.boundaries.extend(boundaries(law, &branch));
+        if let Phase::Closed(touch) = &mut state.phase {
             touch.branch = branch;
-            touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
+            touch.ends_by_rate = state.boundaries.iter().any(|boundary| boundary.per_rate != 0.0);
             touch.begins = false;
         }
         let by_rate = self.depends_on_rate(c);
@@ -164,13 +164,13 @@ impl<'a> March<'a> {
         }
         let mut vanishes = std::mem::take(&mut self.states[c].vanishes);
         vanishes.clear();
-        for which in 0..self.states[c].ends.len() {
-            let Boundary { per_compression, per_rate, level } = self.states[c].ends[which];
+        for which in 0..self.states[c].boundaries.len() {
+            let Boundary { per_compression, per_rate, level } = self.states[c].boundaries[which];
             vanishes
                 .push(per_rate == 0.0 && per_compression > 0.0 && self.is_singular(c, level / per_compression, 0.0));
         }
         self.states[c].vanishes = vanishes;
-        self.forget_horizons();
+        self.discard_predictions();
     }
 
     /// Whether the force of a closed contact may depend on the rate: it does on its whole branch or nowhere, as one of its values tells
@@ -182,7 +182,8 @@ impl<'a> March<'a> {
         let beside = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(by_overlap, by_rate)| {
             (state.overlap + by_overlap * NEAR * scale, state.rate + by_rate * NEAR * speed)
         });
-        let within = |(overlap, rate): &(f64, f64)| state.ends.iter().all(|end| end.margin(*overlap, *rate) > 0.0);
+        let within =
+            |(overlap, rate): &(f64, f64)| state.boundaries.iter().all(|end| end.margin(*overlap, *rate) > 0.0);
         let Some((overlap, rate)) = beside.into_iter().find(within) else { return true };
         self.counts.law_evaluations += 1;
         let force = law.force(&touch.branch, overlap, rate);
@@ -208,9 +209,9 @@ impl<'a> March<'a> {
         let c = target.contact;
         let law = self.law(c);
         let Some(touch) = self.states[c].touch() else {
-            return self.touch(c, 0.0);
+            return self.close(c, 0.0);
         };
-        let Some(&boundary) = self.states[c].ends.get(target.boundary) else { return };
+        let Some(&boundary) = self.states[c].boundaries.get(target.boundary) else { return };
         let (residue, rate_residue) = self.states[c].beside(&boundary);
         match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
@@ -238,7 +239,7 @@ impl<'a> March<'a> {
                 }
                 state.reference += state.overlap - overlap;
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
-                self.forget_horizons();
+                self.discard_predictions();
                 self.depart();
                 self.event(c, Event::Cross(target.boundary));
             }

@@ -162,7 +162,7 @@ impl<'a> March<'a> {
         }
         self.pass(h);
         self.stepped = true;
-        self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
+        self.accept(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
     }
 
     /// Adds the work on the closed contacts, if it is requested.
@@ -192,7 +192,7 @@ impl<'a> March<'a> {
     }
 
     /// Accepts a panel of `h`.
-    pub(super) fn book(
+    pub(super) fn accept(
         &mut self,
         h: f64,
         contacts: &[usize],
@@ -207,7 +207,7 @@ impl<'a> March<'a> {
             let state = &mut self.states[c];
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
-                state.book(h, &solved[i], force[i], &rate, end(i));
+                state.accept(h, &solved[i], force[i], &rate, end(i));
             }
             (state.overlap, state.rate) = end(i);
         }
