@@ -1,7 +1,8 @@
 //! Length of the first panel of a contact and of a branch, which no accepted panel has tested yet.
 //!
-//! At touch it follows from the impulse that the force would have if free motion continued, because the truncation of a force that begins
-//! as `t^(3/2)` is a known function of this impulse (`docs/theory/modal.md`, "How a force begins and ends").
+//! At touch it follows from `J = h F(h)`, the length of the panel times the force at its end if free motion continued, because the
+//! truncation of a force that begins as `t^(3/2)` is a known function of `J` (derived in `docs/theory/modal.md`, "How a force begins and
+//! ends").
 
 use super::enclosure::{Held, of_panel};
 use super::motion::March;
@@ -11,11 +12,11 @@ use contact_models::Branch;
 
 /// Bound on the relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch, and its derivatives.
 pub(super) const SINGULAR: f64 = 2.5e-4;
-/// Where the force is represented as `t^(3/2)` times a polynomial, the error of a first panel's impulse relative to the momentum is
-/// this times the square of that impulse relative to the momentum.
+/// Where the force is represented as `t^(3/2)` times a polynomial, the error of a first panel's impulse is this times `J^2/p`, with the
+/// momentum `p` of the contact: `6/35` times the coefficient of `P_8` in `s^(5/2)`.
 const WEIGHTED: f64 = 4e-6;
 
-/// A first panel beyond the reach of the series may have this share of the impulse that accuracy allows, which makes it four times shorter.
+/// A first panel beyond the reach of the series may have this share of the `J` that accuracy allows, which makes it four times shorter.
 const EXTRAPOLATED: f64 = 1.0 / 32.0;
 /// On such a panel the polynomial may miss this share of the speed of approach. If it missed more, it could not be told whether the
 /// surfaces part at once.
@@ -52,7 +53,7 @@ impl Forecast<'_, '_> {
         self.march.law(self.contact).force(&self.branch, compression, rate).force_n
     }
 
-    /// Bound on the impulse of a panel (N s), with the force at its end all along it.
+    /// `J`, a bound on the impulse of a panel (N s).
     fn impulse(&self, level: i32) -> f64 {
         self.force(self.end(level)) * self.step_s(level)
     }
@@ -124,6 +125,22 @@ fn first_level_where(from: i32, holds: impl Fn(i32) -> bool) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of the Legendre polynomial `P_8(2s - 1)` in a power of `s`.
+    fn coefficient_of_p8(power: f64) -> f64 {
+        let falling: f64 = (0..8).map(|k| power - f64::from(k)).product();
+        let rising: f64 = (1..=9).map(|k| power + f64::from(k)).product();
+        17.0 * falling / rising
+    }
+
+    /// The largest term that a polynomial of degree seven leaves out of a force at first touch.
+    #[test]
+    fn errors_of_a_first_panel_are_those_of_the_derivation() {
+        for (constant, derived) in [(SINGULAR, coefficient_of_p8(1.5)), (WEIGHTED, 6.0 / 35.0 * coefficient_of_p8(2.5))]
+        {
+            assert!((1.0..1.1).contains(&(constant / derived.abs())), "{constant} {derived}");
+        }
+    }
 
     #[test]
     fn the_first_level_is_found_wherever_it_is() {
