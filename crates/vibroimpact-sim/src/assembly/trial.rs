@@ -37,7 +37,7 @@ impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = self.tables.steps.step_s(level);
-        let Trial { contacts, closed, unknowns, free, solved, force, moved, end, turns } = trial;
+        let Trial { contacts, closed, unknowns, free, solved, force, moved, turns, .. } = trial;
         let closed = *closed;
         self.responses.prepare(self.system, self.tables, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
@@ -65,37 +65,42 @@ impl<'a> March<'a> {
             let (open, closed) = (&contacts[closed..], &contacts[..closed]);
             self.responses.prepare(self.system, self.tables, level, open, closed);
         }
-        for &c in &contacts[closed..] {
-            moved.push(self.free_at_nodes(level, c, turns).0);
-        }
-        let (system, tables, responses) = (self.system, self.tables, &*self.responses);
-        let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]);
+        self.move_contacts(level, trial);
+        true
+    }
+
+    /// The overlaps of the contacts under the forces of a panel: their increases up to the nodes, and their values and rates at the end.
+    fn move_contacts(&self, level: i32, trial: &mut Trial) {
+        let h = self.tables.steps.step_s(level);
+        let Trial { contacts, closed, solved, force, moved, end, turns, .. } = trial;
+        let open = &contacts[*closed..];
+        moved.extend(open.iter().map(|&c| self.free_at_nodes(level, c, turns).0));
         end.clear();
         for (i, &c) in contacts.iter().enumerate() {
-            let nodal = &mut moved[i];
-            let (free, mut rate) = tables.free_at_end(level, &system.links[c], &self.amplitude, &self.rate);
+            let (state, nodal) = (&self.states[c], &mut moved[i]);
+            let link = &self.system.links[c];
+            let (free, mut rate) = self.tables.free_at_end(level, link, &self.amplitude, &self.rate);
             let (by_loads, rate_of_loads) = self.loads.moved_on(c, (self.time_s, h), turns, Q);
             let mut forced = 0.0;
-            for (j, solved) in solved.iter().enumerate() {
-                if let Some(response) = response(i, j) {
-                    let (moved, speed) = response.at_end(&force[j]);
-                    forced += moved;
-                    rate += speed;
-                    if i >= closed {
-                        for j in 0..Q {
-                            for i in 0..Q {
-                                nodal[i] += response.nodes[j][i] * solved.acting[j];
-                            }
+            for ((&other, solved), force) in contacts.iter().zip(&*solved).zip(&*force) {
+                let Some(response) = self.responses.of(self.system, level, c, other) else { continue };
+                let (by_force, speed) = response.at_end(force);
+                forced += by_force;
+                rate += speed;
+                if i >= *closed {
+                    for (column, acting) in response.nodes.iter().zip(&solved.acting) {
+                        for (nodal, response) in nodal.iter_mut().zip(column) {
+                            *nodal += response * acting;
                         }
                     }
                 }
             }
-            if i < closed {
+            if i < *closed {
+                // known from the solution of the laws
                 *nodal = solved[i].moved;
             }
-            end.push((self.states[c].overlap + (free + by_loads + forced), rate + rate_of_loads));
+            end.push((state.overlap + (free + by_loads + forced), rate + rate_of_loads));
         }
-        true
     }
 
     /// The closed contacts' laws and first guesses on a panel of `h`.
