@@ -216,8 +216,8 @@ fn errors_name_the_field() {
     for (arguments, named) in [
         (vec!["--over", "loads[0].colour", "--to", "2"], "--over"),
         (vec!["--over", "loads[7].frequency_hz", "--to", "2", "--from", "1"], "loads has 1 entry"),
-        (vec!["--over", "loads[0].frequency_hz", "--to", "1.3"], "to"),
-        (vec!["--over", "loads[0].frequency_hz", "--to", "2", "--step", "7"], "step"),
+        (vec!["--over", "loads[0].frequency_hz", "--to", "1.3"], "error: --to = 1.3 is not allowed"),
+        (vec!["--over", "loads[0].frequency_hz", "--to", "2", "--step", "7"], "error: --step = 7 is not allowed"),
     ] {
         let arguments: Vec<&str> = ["orbit", &scene].into_iter().chain(arguments).collect();
         let output = run(folder.path(), &arguments);

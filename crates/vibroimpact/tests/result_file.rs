@@ -156,6 +156,27 @@ fn a_dropped_rod_states_its_final_velocities() {
     assert!(text.contains("rod leaves at") && !text.contains("striker leaves at"), "{text}");
 }
 
+/// A run that stopped early, or a sustained contact, has no rebound in which a body would leave.
+#[test]
+fn bodies_leave_only_in_a_rebound() {
+    use vibroimpact::{Scene, simulate::Simulation};
+    for (name, body) in [("dropped-rod", "rod"), ("pinned-beam-undamped", "striker")] {
+        let Simulation::Modal(found) = Scene::from_value(&scene(name)).unwrap().simulate().unwrap() else {
+            panic!("{name} is resolved")
+        };
+        let mut summary = found.summary;
+        for (outcome, verb) in [("rebound", "leaves"), ("stopped", "moves"), ("sustained", "moves")] {
+            summary.outcome = outcome;
+            let text = vibroimpact::text::result(&summary);
+            assert!(text.contains(&format!("  {body} {verb} at ")), "{text}");
+            assert_eq!(text.contains(" leaves at "), outcome == "rebound", "{text}");
+        }
+        (summary.energy.contact_j, summary.energy.residual_j) = (0.0, 0.0);
+        let text = vibroimpact::text::result(&summary);
+        assert!(text.contains("    unaccounted                  0 J\n"), "{text}");
+    }
+}
+
 #[test]
 fn histories_extend_to_the_requested_time_where_the_motion_is_known() {
     let folder = tempfile::tempdir().unwrap();

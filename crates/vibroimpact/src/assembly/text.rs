@@ -6,7 +6,7 @@ use super::steady::SteadyMotion;
 use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
 use crate::summary::loss_and_residual;
-use crate::text::{counted, quantity, quantity_apart};
+use crate::text::{counted, quantity, quantity_apart, residual};
 use crate::trust::trust_text;
 
 /// Largest number of intervals of contact that are listed; the others are counted.
@@ -123,14 +123,14 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
         ("lost in contacts", lost_j),
     ];
     let part = |(name, value): (&str, f64)| [name.to_owned(), quantity(value, "J")];
-    let residual = ["unaccounted".to_owned(), format!("{unaccounted_j:.0e} J")];
+    let unaccounted = ["unaccounted".to_owned(), residual(unaccounted_j)];
     let largest =
         energy.bodies.values().flat_map(|body| [body.start_j, body.end_j]).fold(energy.load_work_j.abs(), f64::max);
     let rounding = (energy.rounding_j > VISIBLE_ROUNDING * largest).then(|| {
         let why = "they are differences of larger energies, as where a load nearly meets an undamped frequency";
         ["rounding".to_owned(), format!("up to {:.0e} J in each of these: {why}", energy.rounding_j)]
     });
-    energy.bodies.iter().map(body).chain(parts.map(part)).chain([residual]).chain(rounding).collect()
+    energy.bodies.iter().map(body).chain(parts.map(part)).chain([unaccounted]).chain(rounding).collect()
 }
 
 /// The result of a run.

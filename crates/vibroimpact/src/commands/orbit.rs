@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::Args;
+use vibroimpact::InvalidInput;
 use vibroimpact::assembly;
 use vibroimpact::export::Failure;
 use vibroimpact::orbit::{self, Over};
@@ -94,7 +95,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         };
     };
     let over = Over { field, from: arguments.from, to, step: arguments.step, doublings: arguments.doublings };
-    let branch = scene.orbit_branch(&over, &settings, &|| stop.load(Ordering::Relaxed))?;
+    let branch = scene.orbit_branch(&over, &settings, &|| stop.load(Ordering::Relaxed)).map_err(as_option)?;
     let printed = match arguments.json {
         true => branch.json(&scene)?,
         false => format!("{headline}\n\n{}{}", branch.text(), signature()),
@@ -105,4 +106,13 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         }
         arguments.picture.draw(printed, arguments.json, || Ok(orbit::picture(&headline, &branch)))
     })
+}
+
+/// An error in the range or the first step of a branch, under the name of its option.
+fn as_option(fault: InvalidInput) -> InvalidInput {
+    let options = [("to", "--to"), ("step", "--step")];
+    match options.into_iter().find(|(name, _)| fault.field == *name) {
+        Some((_, option)) => InvalidInput { field: option.into(), ..fault },
+        None => fault,
+    }
 }

@@ -10,7 +10,7 @@ use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
-use crate::text::{quantity, restitution, significant, stopped};
+use crate::text::{leaves, quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
 /// Under the picture of an impact.
@@ -300,7 +300,10 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
             rows.push(row("velocity of the end that struck, without vibration", quantity(rod.end_velocity_m_s, "m/s")));
         }
         None if impact.striker.mass_kg.is_infinite() => {}
-        None => rows.push(row("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"))),
+        None => {
+            let name = format!("striker {} at", leaves(summary.outcome));
+            rows.push(row(&name, quantity(summary.striker_velocity_m_s, "m/s")));
+        }
     }
     rows.push(row("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s"))));
     rows

@@ -11,7 +11,7 @@ use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
 pub use parts::{counted, printable, quantity, shorten, significant};
-pub(crate) use parts::{filled, quantity_apart, restitution, small, stopped, superscript};
+pub(crate) use parts::{filled, leaves, quantity_apart, residual, restitution, small, stopped, superscript};
 
 /// Shares of the energy below this value are due to rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -94,24 +94,28 @@ pub fn result(summary: &Summary) -> String {
         line("restitution", restitution(value, summary.restitution_uncertainty));
         line("as modelled", restitution(value, summary.uncertainty.solver));
     }
+    let leaves = leaves(summary.outcome);
     match &summary.rod {
         Some(rod) => {
-            line("rod leaves at", format!("{} at its centre", quantity(rod.centre_velocity_m_s, "m/s")));
+            line(&format!("rod {leaves} at"), format!("{} at its centre", quantity(rod.centre_velocity_m_s, "m/s")));
             line("and turns at", quantity(rod.angular_velocity_rad_s, "rad/s"));
-            line("its end leaves at", format!("{}, without vibration", quantity(rod.end_velocity_m_s, "m/s")));
+            line(
+                &format!("its end {leaves} at"),
+                format!("{}, without vibration", quantity(rod.end_velocity_m_s, "m/s")),
+            );
         }
         // the final speed of a stop is zero
         None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}
-        None => line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")),
+        None => line(&format!("striker {leaves} at"), quantity(summary.striker_velocity_m_s, "m/s")),
     }
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
-    let residual = if summary.remainder_modes > 0 {
+    let remainder = if summary.remainder_modes > 0 {
         let compliance = quantity(summary.residual_compliance_m_n, "m/N");
         format!(", and {} remainder modes for all others ({compliance})", summary.remainder_modes)
     } else {
         String::new()
     };
-    line("modes", format!("{}{residual}", summary.modes));
+    line("modes", format!("{}{remainder}", summary.modes));
     if let Some(choice) = &summary.choice {
         text += &answer_text(choice);
     }
@@ -135,7 +139,7 @@ pub fn result(summary: &Summary) -> String {
     ] {
         let _ = writeln!(text, "    {name:<20}{}", share(part));
     }
-    let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", format!("{unaccounted_j:.0e} J"));
+    let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", residual(unaccounted_j));
 
     if summary.sub_impact_count > 0 {
         let _ = writeln!(

@@ -120,9 +120,24 @@ pub(crate) fn stopped(reason: Option<StopReason>) -> Option<String> {
     reason.map(|reason| format!("stopped before the impact ended ({}): {}", reason.as_str(), reason.advice()))
 }
 
+/// What a body does at the end of an impact: it leaves the other only in a rebound.
+pub(crate) fn leaves(outcome: &str) -> &'static str {
+    if outcome == "rebound" { "leaves" } else { "moves" }
+}
+
+/// A residual of energies, of which only the size matters.
+pub(crate) fn residual(energy_j: f64) -> String {
+    if energy_j == 0.0 { "0 J".to_owned() } else { format!("{energy_j:.0e} J") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_residual_has_one_digit_or_is_zero() {
+        assert_eq!([0.0, -0.0, -1.3e-14].map(residual), ["0 J", "0 J", "-1e-14 J"]);
+    }
 
     #[test]
     fn quantities_carry_si_prefixes() {
