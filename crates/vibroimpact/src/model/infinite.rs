@@ -32,7 +32,7 @@ use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
-use crate::scene::{End, InvalidInput, Scene};
+use crate::scene::{End, InvalidInput, Scene, rigid_mobility};
 use crate::text::small;
 
 /// Times and distances from which [`reflection_bound`] holds.
@@ -246,7 +246,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
 
     let (mass, speed) = (pose.striker.mass_kg, pose.striker.speed_m_s);
     let modes = pose.first(SUMMED, cost)?;
-    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
+    let rigid = rigid_mobility(modes);
     let ratio = solution.rebound_ratio();
     let impulse = mass * speed * (1.0 + ratio.unwrap_or(0.0));
     let beam_mass = beam.section.mass_per_length_kg_m * (beam.distances[0] + beam.distances[1]);

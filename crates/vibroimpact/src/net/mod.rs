@@ -18,7 +18,7 @@ use vibroimpact_sim::modal::{Mode, Solver};
 use crate::in_scene::in_scene;
 use crate::model::Kept;
 use crate::scene::require_positive;
-use crate::scene::{InvalidInput, Scene, as_json, such_that};
+use crate::scene::{InvalidInput, Scene, as_json, rigid_mobility, such_that};
 
 /// Number of modes in the law if neither the caller nor the scene states it (thesis 7.2).
 const LAW_MODES: usize = 50;
@@ -132,7 +132,7 @@ fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     if mass_kg != f64::INFINITY {
         require_positive("mass_kg", mass_kg)?;
     }
-    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
+    let rigid = rigid_mobility(modes);
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
     Impact::new(effective_kg, &Site::new(&vibrating(modes))?).map_err(|fault| match fault.field.first() {

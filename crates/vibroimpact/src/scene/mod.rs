@@ -98,7 +98,7 @@ pub use path::FieldPath;
 pub use place::MOST_MODES;
 pub(crate) use place::{Place, require_count};
 pub use plate::{CONVERGED_FREQUENCY, Edge, Plate, PlateTheory};
-pub(crate) use remainder::{COMPLETE, compliance, require_elastic};
+pub(crate) use remainder::{COMPLETE, compliance, require_elastic, rigid_mobility};
 pub use segment::Segment;
 pub(crate) use start::by_frequency;
 pub use start::{MovingMode, Start};

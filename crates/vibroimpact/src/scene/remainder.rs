@@ -128,6 +128,11 @@ pub(crate) fn compliance(modes: &[Mode]) -> f64 {
     elastic.rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).fold(0.0, |sum, one| sum + one)
 }
 
+/// Inverse mass of the rigid ones of these modes at the location (1/kg).
+pub(crate) fn rigid_mobility(modes: &[Mode]) -> f64 {
+    modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
