@@ -15,7 +15,7 @@ use super::gauge::{FORCE_FILE, Signal};
 use super::quantity::Quantity;
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
-use crate::model::{Kept, chooses_modes};
+use crate::model::{Kept, chooses_modes, more};
 use crate::scene::FieldPath;
 use crate::scene::json::{number, quote};
 use crate::scene::told::did_you_mean_one_of;
@@ -34,9 +34,8 @@ pub(super) const SHARE_OF_NOISE: f64 = 0.2;
 const TIGHTEST: f64 = 1e-6;
 const LOOSEST: f64 = 1e-2;
 
-/// For other quantities the number of modes is raised by this factor, until it exceeds a limit. All further modes are assumed to change a
+/// For other quantities the number of modes is raised step by step, until it exceeds a limit. All further modes are assumed to change a
 /// quantity by so many times the change from two such steps.
-const RAISE: f64 = 1.4;
 const MOST_MODES: usize = 500;
 const FURTHER: f64 = 3.0;
 
@@ -179,13 +178,12 @@ impl<'a> Model<'a> {
     /// hardly change the restitution may change a peak force. It ends earlier where the impacts with more modes cannot be resolved.
     fn resolve_quantities(&mut self, rows: &[&Row], parameters: &[f64], kept: &mut Kept) {
         let Some(count) = self.modes.filter(|_| !rows.is_empty()) else { return };
-        let more = |count: &usize| (*count as f64 * RAISE).ceil() as usize;
         let mut in_noise = |count| {
             self.modes = Some(count);
             let of_row = |row: &&Row| self.in_noise(row, parameters, kept);
             (count, rows.iter().map(of_row).collect::<Option<Vec<_>>>().map(|rows| rows.concat()))
         };
-        let mut tried: Vec<_> = [count, more(&count), more(&more(&count))].map(&mut in_noise).into();
+        let mut tried: Vec<_> = [count, more(count), more(more(count))].map(&mut in_noise).into();
         let mut left_out_sd = None;
         while let [(_, Some(here)), (next, Some(more_modes)), (last, Some(most_modes))] = &tried[..] {
             let change = largest_change(here, more_modes).max(largest_change(here, most_modes));
@@ -193,7 +191,7 @@ impl<'a> Model<'a> {
             if FURTHER * change <= SHARE_OF_NOISE || *next > MOST_MODES {
                 break;
             }
-            let following = in_noise(more(last));
+            let following = in_noise(more(*last));
             tried.remove(0);
             tried.push(following);
         }

@@ -216,7 +216,7 @@ pub(super) fn resolution_of(
 }
 
 /// A number of modes one step above.
-pub(super) fn more(count: usize) -> usize {
+pub(crate) fn more(count: usize) -> usize {
     ((count as f64 * RAISE).round() as usize).max(count + 1)
 }
 

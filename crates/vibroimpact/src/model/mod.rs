@@ -42,6 +42,7 @@ pub use compare::{Comparison, Tier};
 #[cfg(feature = "files")]
 pub(crate) use draw::Draw;
 pub use emoc::{VALIDATED, Validated, law as emoc_law};
+pub(crate) use guess::more;
 pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;
 pub use plan::{Estimate, Plan};
