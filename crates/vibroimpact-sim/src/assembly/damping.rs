@@ -4,7 +4,7 @@
 //! (`damping_form.rs`). A contact excites all modes of a body by the same polynomial, `g_nk = -psi_k F_n`. The part quadratic
 //! in the force is therefore summed over the modes only once, and a panel takes a few operations for each mode.
 
-use super::damping_form::{Form, all_by_parts, by_parts};
+use super::damping_form::{ByParts, Form, OfState, Polynomials, add_polynomials, all_by_parts};
 use super::system::System;
 use crate::panel::lanes::Lanes;
 use crate::panel::legendre::{Legendre, Matrix, Nodal, Q, add_motion, apply, dot};
@@ -31,15 +31,15 @@ struct ByMode {
 impl ByMode {
     /// Adds the next mode, with the square of its frequency.
     #[inline(always)]
-    fn push(&mut self, square: f64, Form { bb, bq, qq }: &Form) {
-        // the first column, since the upper half is left at zero
+    fn push(&mut self, square: f64, OfState { bb, bq, q0 }: &OfState) {
         let mut from_a = [0.0; Q];
         let mut from_b = [0.0; Q];
         for n in 0..Q {
-            (from_a[n], from_b[n]) = (-2.0 * square * qq[n][0], 2.0 * bq[n]);
+            (from_a[n], from_b[n]) = (-2.0 * square * q0[n], 2.0 * bq[n]);
         }
-        let free = [square * square * qq[0][0], -2.0 * square * bq[0], *bb];
-        self.free.iter_mut().zip(free).for_each(|(row, lost)| row.push(lost));
+        self.free[0].push(square * square * q0[0]);
+        self.free[1].push(-2.0 * square * bq[0]);
+        self.free[2].push(*bb);
         self.cross.push((from_a, from_b));
     }
 }
@@ -52,10 +52,16 @@ struct Sum {
     weights: Vec<f64>,
     /// The lower half, of modes taken one by one and of those taken [`LANES`] at a time.
     alone: Matrix,
-    lanes: [[Lanes; Q]; Q],
+    vibrating: [[Lanes; Q]; Q],
+    polynomials: Polynomials<Lanes>,
 }
 
 impl Sum {
+    fn new(place: usize, weights: Vec<f64>) -> Sum {
+        let [vibrating, polynomials] = [[[Lanes::ZERO; Q]; Q]; 2];
+        Sum { place, weights, alone: [[0.0; Q]; Q], vibrating, polynomials }
+    }
+
     #[inline(always)]
     fn add(&mut self, weight: f64, qq: &Matrix) {
         for n in 0..Q {
@@ -66,18 +72,23 @@ impl Sum {
     }
 
     #[inline(always)]
-    fn add_lanes(&mut self, weights: Lanes, qq: &[[Lanes; Q]; Q]) {
+    fn add_by_parts(&mut self, weights: Lanes, modes: &ByParts) {
         for n in 0..Q {
             for m in 0..=n {
-                self.lanes[n][m] = self.lanes[n][m] + weights * qq[n][m];
+                self.vibrating[n][m] = self.vibrating[n][m] + weights * modes.vibrating[n][m];
             }
         }
+        modes.add_polynomials(weights, &mut self.polynomials);
     }
 
     /// The whole matrix.
     fn total(&self) -> Matrix {
-        let lower = |n: usize, m: usize| self.alone[n][m] + sum_of_lanes(self.lanes[n][m].0);
-        array::from_fn(|n| array::from_fn(|m| lower(n.max(m), n.min(m))))
+        let mut lower: Matrix =
+            array::from_fn(|n| array::from_fn(|m| self.alone[n][m] + sum_of_lanes(self.vibrating[n][m].0)));
+        if self.polynomials != [[Lanes::ZERO; Q]; Q] {
+            add_polynomials(&mut lower, &self.polynomials.map(|row| row.map(|lanes| sum_of_lanes(lanes.0))));
+        }
+        array::from_fn(|n| array::from_fn(|m| lower[n.max(m)][n.min(m)]))
     }
 }
 
@@ -96,7 +107,7 @@ impl Damping {
                 if self.pairs[place].get().is_none() {
                     let mut weights = vec![0.0; system.modes.len()];
                     system.links[c].shared(&system.links[other]).for_each(|(k, weight)| weights[k] = weight);
-                    missing.push(Sum { place, weights, alone: [[0.0; Q]; Q], lanes: [[Lanes::ZERO; Q]; Q] });
+                    missing.push(Sum::new(place, weights));
                 }
             }
         }
@@ -112,18 +123,21 @@ impl Damping {
                     let first = block * LANES;
                     if all_by_parts(modes, h) {
                         // the last modes are padded by modes without weight
-                        let form = by_parts(&array::from_fn(|l| modes[l.min(modes.len() - 1)]), h);
+                        let mut padded = [modes[0]; LANES];
+                        padded[..modes.len()].copy_from_slice(modes);
+                        let by_parts = ByParts::new(&padded, h);
                         for (l, square) in system.square[first..][..modes.len()].iter().enumerate() {
-                            by_mode.push(*square, &form.of_lane(l));
+                            by_mode.push(*square, &by_parts.of_state(l));
                         }
                         for sum in &mut missing {
-                            let weights = Lanes::of(|l| if l < modes.len() { sum.weights[first + l] } else { 0.0 });
-                            sum.add_lanes(weights, &form.qq);
+                            let mut weights = Lanes::ZERO;
+                            weights.0[..modes.len()].copy_from_slice(&sum.weights[first..][..modes.len()]);
+                            sum.add_by_parts(weights, &by_parts);
                         }
                     } else {
                         for (l, mode) in modes.iter().enumerate() {
                             let form = Form::of(mode, h);
-                            by_mode.push(system.square[first + l], &form);
+                            by_mode.push(system.square[first + l], &form.of_state());
                             missing.iter_mut().for_each(|sum| sum.add(sum.weights[first + l], &form.qq));
                         }
                     }

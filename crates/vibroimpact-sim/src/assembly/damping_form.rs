@@ -17,10 +17,10 @@
 
 use crate::panel::forcing::rate;
 use crate::panel::lanes::{ComplexLanes, Lanes};
-use crate::panel::legendre::{BASIS, Legendre, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
-use crate::panel::vector::{LANES, sum_over};
+use crate::panel::vector::{LANES, sum_over, vectorized};
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
@@ -34,10 +34,17 @@ static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
 /// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
 /// upper half is left at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Form<T = f64> {
-    pub bb: T,
-    pub bq: [T; Q],
-    pub qq: [[T; Q]; Q],
+pub(crate) struct Form {
+    pub bb: f64,
+    pub bq: Nodal,
+    pub qq: Matrix,
+}
+
+/// The part of a form that depends on the motion at the start, with the first column of `qq`.
+pub(crate) struct OfState {
+    pub bb: f64,
+    pub bq: Nodal,
+    pub q0: Nodal,
 }
 
 impl Form {
@@ -54,10 +61,19 @@ impl Form {
         } else if turned <= SLOW {
             FINE.form(mode, h)
         } else if mode.damping_ratio < NEARLY_CRITICAL {
-            by_parts(&[*mode; LANES], h).of_lane(0)
+            ByParts::new(&[*mode; LANES], h).of_lane(0)
         } else {
             by_quadrature(mode, h)
         }
+    }
+
+    #[inline(always)]
+    pub fn of_state(&self) -> OfState {
+        let mut q0 = [0.0; Q];
+        for n in 0..Q {
+            q0[n] = self.qq[n][0];
+        }
+        OfState { bb: self.bb, bq: self.bq, q0 }
     }
 
     /// Adds the products of the rates at one place, which are those to a unit rate and to unit Legendre forces over `h`.
@@ -168,102 +184,179 @@ pub(crate) fn all_by_parts(modes: &[BodyMode], h: f64) -> bool {
     modes.iter().all(by_parts)
 }
 
-impl Form<Lanes> {
-    #[inline(always)]
-    pub fn of_lane(&self, l: usize) -> Form {
-        Form {
-            bb: self.bb.0[l],
-            bq: self.bq.map(|value| value.0[l]),
-            qq: self.qq.map(|row| row.map(|value| value.0[l])),
-        }
-    }
+/// Losses of [`LANES`] modes for which [`all_by_parts`] holds. The rate to a Legendre force is a multiple of `e^{z x}`, and the polynomial
+/// `sum_k gamma_k P_n^(k)`, in which only the `gamma_k` depend on the mode.
+pub(crate) struct ByParts {
+    /// As in [`Form`].
+    bb: Lanes,
+    bq: [Lanes; Q],
+    /// Lower half of `qq` without the products of two polynomials.
+    pub vibrating: [[Lanes; Q]; Q],
+    gamma: [Lanes; Q],
+    /// From a mean over the panel of products of two rates to forces to the loss.
+    loss: Lanes,
 }
 
-/// Modes for which [`all_by_parts`] holds.
-#[inline(always)]
-pub(crate) fn by_parts(modes: &[BodyMode; LANES], h: f64) -> Form<Lanes> {
-    let sigma = Lanes::of(|l| modes[l].damping_ratio * modes[l].omega_rad_s);
-    let omega_d =
-        Lanes::of(|l| modes[l].omega_rad_s * ((1.0 - modes[l].damping_ratio) * (1.0 + modes[l].damping_ratio)).sqrt());
-    let z = |l: usize| Complex64::new(-sigma.0[l], omega_d.0[l]) * h;
-    let inverse = ComplexLanes::of(|l| z(l).inv());
-    // the rate is Re(c e^{z x}) with this c
-    let scale = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::of(|l| sigma.0[l] / omega_d.0[l]) };
+/// `[k][j]`: the sums over modes that multiply `int P_n^(k) P_m^(j)`.
+pub(crate) type Polynomials<T> = [[T; Q]; Q];
 
-    // Q_n = sum_k P_n^(k)/z^(k+1) by Legendre coefficients: v_n/h = Re(scale (e^{z x} Q_n(0) - Q_n(x)))
-    let mut sums = [[ComplexLanes::ZERO; Q]; Q];
-    sums[0][0] = inverse;
-    (sums[1][0], sums[1][1]) = (inverse * 2.0 * inverse, inverse);
-    for n in 1..Q - 1 {
-        let factor = inverse * (4 * n + 2) as f64;
-        for d in 0..=n {
-            sums[n + 1][d] = sums[n - 1][d] + factor * sums[n][d];
-        }
-        sums[n + 1][n + 1] = inverse;
-        sums[n + 1][n - 1] = sums[n + 1][n - 1] - inverse;
-    }
-
-    // means of P_d e^{z x}, of e^{2 z x} and of |e^{z x}|^2
-    let whole = ComplexLanes::of(|l| z(l).exp());
-    let (mut at_start, mut moments) = ([ComplexLanes::ZERO; Q], [ComplexLanes::ZERO; Q]);
-    for n in 0..Q {
-        let mut at_end = ComplexLanes::ZERO;
-        for (d, value) in sums[n].iter().enumerate().take(n + 1) {
-            at_end = at_end + *value;
-            at_start[n] = if d % 2 == 0 { at_start[n] + *value } else { at_start[n] - *value };
-        }
-        let moment = whole * at_start[n] - at_end;
-        moments[n] = if n % 2 == 0 { moment } else { ComplexLanes::ZERO - moment };
-    }
-    let one = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
-    let turned = (whole * whole - one) * 0.5 * inverse;
-    let decayed = Lanes::of(|l| {
-        let decay = 2.0 * sigma.0[l] * h;
-        if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay }
-    });
-
-    // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}): the mean of a product is bilinear in the
-    // coefficients, c, and the mean m of the polynomial times e^{z x}
-    let left = |c: ComplexLanes, m: ComplexLanes| [m.re, m.im, c.re, c.im];
-    let right = |c: ComplexLanes, m: ComplexLanes| {
-        let turned = m + c * 0.5 * turned;
-        let half = decayed * 0.5;
-        [c.re, -c.im, turned.re + half * c.re, half * c.im - turned.im]
-    };
-    let product = |one: &[Lanes; 4], other: &[Lanes; 4]| {
-        (one[0] * other[0] + one[1] * other[1]) + (one[2] * other[2] + one[3] * other[3])
-    };
-    let by_rate = left(scale, ComplexLanes::ZERO);
-    let mut polynomials = [[Lanes::ZERO; Q]; Q];
-    let mut others = [[Lanes::ZERO; 4]; Q];
-    let mut form = Form { bb: Lanes::ZERO, bq: [Lanes::ZERO; Q], qq: [[Lanes::ZERO; Q]; Q] };
-    // from a mean over the panel of products of rates, those to forces divided by h, to the loss
-    let loss = sigma * (2.0 * h);
-    for n in 0..Q {
-        let c = scale * at_start[n];
-        let mut m = ComplexLanes::ZERO;
-        for d in 0..=n {
-            polynomials[n][d] = scale.im * sums[n][d].im - scale.re * sums[n][d].re;
-            m = m + moments[d] * polynomials[n][d];
-        }
-        others[n] = right(c, m);
-        let row = left(c, m);
-        let mut weighted = [Lanes::ZERO; Q];
-        for d in 0..=n {
-            weighted[d] = polynomials[n][d] * (1.0 / (2 * d + 1) as f64);
-        }
-        for k in 0..=n {
-            let mut sum = product(&row, &others[k]);
-            for d in 0..=k {
-                sum = sum + weighted[d] * polynomials[k][d];
+/// Adds to the lower half of `qq` what these sums, of which only the lower half is used, multiply.
+pub(crate) fn add_polynomials(qq: &mut Matrix, sums: &Polynomials<f64>) {
+    let (derivatives, weights) = (&BASIS.derivatives, &BASIS.weights);
+    vectorized(
+        #[inline(always)]
+        || {
+            for m in 1..Q {
+                // at the nodes
+                let mut columns = [[0.0; Q]; Q];
+                for k in 1..Q {
+                    for j in 1..=m {
+                        let sum = sums[k.max(j)][k.min(j)];
+                        for i in 0..Q {
+                            columns[k][i] += sum * weights[i] * derivatives[j][m][i];
+                        }
+                    }
+                }
+                for n in m..Q {
+                    for k in 1..=n {
+                        [qq[n][m]] = sum_over(
+                            [&columns[k], &derivatives[k][n]],
+                            #[inline(always)]
+                            |[column, derivative]| [column * derivative],
+                        )
+                        .map(|product| qq[n][m] + product);
+                    }
+                }
             }
-            form.qq[n][k] = sum * loss * (h * h);
-        }
-        form.bq[n] = product(&by_rate, &others[n]) * loss * h;
-    }
-    form.bb = product(&by_rate, &right(scale, ComplexLanes::ZERO)) * loss;
-    form
+        },
+    );
 }
+
+impl ByParts {
+    #[inline(always)]
+    pub fn new(modes: &[BodyMode; LANES], h: f64) -> ByParts {
+        let (mut sigma, mut omega_d, mut decayed) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+        let (mut z, mut inverse, mut whole) = (ComplexLanes::ZERO, ComplexLanes::ZERO, ComplexLanes::ZERO);
+        for (l, mode) in modes.iter().enumerate() {
+            let BodyMode { omega_rad_s, damping_ratio } = *mode;
+            sigma.0[l] = damping_ratio * omega_rad_s;
+            omega_d.0[l] = omega_rad_s * ((1.0 - damping_ratio) * (1.0 + damping_ratio)).sqrt();
+            let decay = 2.0 * sigma.0[l] * h;
+            decayed.0[l] = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
+            let of_mode = Complex64::new(-sigma.0[l], omega_d.0[l]) * h;
+            z.set_lane(l, of_mode);
+            inverse.set_lane(l, of_mode.inv());
+            whole.set_lane(l, of_mode.exp());
+        }
+        // the rate after a unit rate is Re(c e^{z x}) with this c
+        let mut scale = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
+        let mut turn = Lanes::ZERO;
+        for l in 0..LANES {
+            scale.im.0[l] = sigma.0[l] / omega_d.0[l];
+            turn.0[l] = 1.0 / (omega_d.0[l] * h);
+        }
+
+        // the rate to P_n is Re(scale (e^{z x} Q_n(0) - Q_n(x))) h with Q_n = sum_k P_n^(k)/z^(k+1), where scale/z = -i/(omega_d h);
+        // and int P_n^(k) e^{z x} = [sum_s (-1)^(s-k) P_n^(s) e^{z x}/z^(s-k+1)] from s = k on
+        let (mut gamma, mut beta) = ([Lanes::ZERO; Q], [ComplexLanes::ZERO; Q]);
+        let mut power = inverse;
+        for k in 1..Q {
+            gamma[k] = -(power.im * turn);
+            beta[k] = (ComplexLanes { re: gamma[k], im: Lanes::ZERO } - beta[k - 1]) * inverse;
+            power = power * inverse;
+        }
+        // Q_n(0) obeys the recurrence of the spherical Bessel functions
+        let mut at_start = [inverse; Q];
+        at_start[1] = inverse * 2.0 * inverse - inverse;
+        for n in 1..Q - 1 {
+            at_start[n + 1] = at_start[n - 1] + inverse * (4 * n + 2) as f64 * at_start[n];
+        }
+
+        // means of e^{2 z x}/2 and of |e^{z x}|^2/2
+        let one = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
+        let turned = (whole * whole - one) * 0.25 * inverse;
+        let half = decayed * 0.5;
+        // the mean of a product of two rates is bilinear in their c and the means of their polynomials times e^{z x}
+        let loss = sigma * (2.0 * h);
+        let seen = |c: ComplexLanes, mean: ComplexLanes| {
+            let by_c = mean + c * turned;
+            [by_c.re + half * c.re, half * c.im - by_c.im]
+        };
+        let [by_rate_re, by_rate_im] = seen(scale, ComplexLanes::ZERO);
+        let bb = (scale.re * by_rate_re + scale.im * by_rate_im) * loss;
+        let mut bq = [Lanes::ZERO; Q];
+        let mut vibrating = [[Lanes::ZERO; Q]; Q];
+        let (mut c, mut mean, mut other) = ([ComplexLanes::ZERO; Q], [ComplexLanes::ZERO; Q], [[Lanes::ZERO; 2]; Q]);
+        let loss_by_force = loss * (h * h);
+        for n in 0..Q {
+            // sums over odd and over even derivatives, which are those at the end: at the start every second has the other sign
+            let mut sums = [ComplexLanes::ZERO; 2];
+            for s in 1..=n {
+                sums[s % 2] = sums[s % 2] + beta[s] * AT_END[n][s];
+            }
+            let [even, odd] = sums;
+            let at_start_of_panel = if n % 2 == 0 { even - odd } else { odd - even };
+            mean[n] = whole * (even + odd) - at_start_of_panel;
+            c[n] = scale * at_start[n];
+            other[n] = seen(c[n], mean[n]);
+            bq[n] = (scale.re * other[n][0] + scale.im * other[n][1]) * loss * h;
+            for m in 0..=n {
+                let by_vibration = c[n].re * other[m][0] + c[n].im * other[m][1];
+                let by_polynomial = mean[n].re * c[m].re - mean[n].im * c[m].im;
+                vibrating[n][m] = (by_vibration + by_polynomial) * loss_by_force;
+            }
+        }
+        ByParts { bb, bq, vibrating, gamma, loss: loss_by_force }
+    }
+
+    /// What these modes, with these weights, add to the sums over the modes.
+    #[inline(always)]
+    pub fn add_polynomials(&self, weights: Lanes, sums: &mut Polynomials<Lanes>) {
+        let weights = weights * self.loss;
+        for k in 1..Q {
+            let weighted = weights * self.gamma[k];
+            for j in 1..=k {
+                sums[k][j] = sums[k][j] + weighted * self.gamma[j];
+            }
+        }
+    }
+
+    /// The losses of one mode that depend on its motion at the start.
+    #[inline(always)]
+    pub fn of_state(&self, l: usize) -> OfState {
+        // the rate to a constant force contains no polynomial
+        let (mut bq, mut q0) = ([0.0; Q], [0.0; Q]);
+        for n in 0..Q {
+            (bq[n], q0[n]) = (self.bq[n].0[l], self.vibrating[n][0].0[l]);
+        }
+        OfState { bb: self.bb.0[l], bq, q0 }
+    }
+
+    /// The whole form of one mode.
+    fn of_lane(&self, l: usize) -> Form {
+        let OfState { bb, bq, .. } = self.of_state(l);
+        let mut qq = self.vibrating.map(|row| row.map(|value| value.0[l]));
+        let gamma = self.gamma.map(|value| value.0[l]);
+        add_polynomials(&mut qq, &gamma.map(|one| gamma.map(|other| self.loss.0[l] * one * other)));
+        Form { bb, bq, qq }
+    }
+}
+
+/// `[n][s]`: the derivatives of `P_n(2x-1)` at 1, `(n+s)! / (s! (n-s)!)`.
+const AT_END: [[f64; Q]; Q] = {
+    let mut table = [[0.0; Q]; Q];
+    let mut n = 0;
+    while n < Q {
+        let (mut s, mut value) = (0, 1.0);
+        while s <= n {
+            table[n][s] = value;
+            value *= ((n + s + 1) * (n - s)) as f64 / (s + 1) as f64;
+            s += 1;
+        }
+        n += 1;
+    }
+    table
+};
 
 /// Any damping, on panels that grow away from the start.
 fn by_quadrature(mode: &BodyMode, h: f64) -> Form {

@@ -81,6 +81,11 @@ impl ComplexLanes {
     }
 
     #[inline(always)]
+    pub fn set_lane(&mut self, l: usize, value: Complex64) {
+        (self.re.0[l], self.im.0[l]) = (value.re, value.im);
+    }
+
+    #[inline(always)]
     pub fn of_lane(&self, l: usize) -> Complex64 {
         Complex64::new(self.re.0[l], self.im.0[l])
     }
