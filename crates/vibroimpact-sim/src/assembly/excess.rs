@@ -45,22 +45,29 @@ pub(crate) struct Pushed {
 impl Excess {
     /// The difference for a panel of `h`, on which the modes have these motions.
     pub fn new(system: &System, h: f64, modes: impl Iterator<Item = OnPanel>) -> Excess {
-        let of = |(k, mode): (usize, OnPanel)| {
-            if !is_fast(system, h, k) {
-                return ([0.0; Q], [0.0; Q]);
-            }
-            let OnPanel { at_nodes, at_end, pushed } = mode;
-            let exact = |n: usize, value: f64| if n.is_multiple_of(2) { value } else { -value };
-            let (mut by_amplitude, mut by_rate) =
-                (work_of_unit_forces(&at_nodes.0, at_end.0), work_of_unit_forces(&at_nodes.1, at_end.1));
-            for n in 0..Q {
-                by_amplitude[n] = exact(n, -system.square[k] * pushed.amplitude[n]) - by_amplitude[n];
-                by_rate[n] = exact(n, pushed.rate[n]) - by_rate[n];
-            }
-            (by_amplitude, by_rate)
-        };
+        let mut by_motion = Vec::with_capacity(system.modes.len());
+        vectorized(
+            #[inline(always)]
+            || {
+                for (k, mode) in modes.enumerate() {
+                    if !is_fast(system, h, k) {
+                        by_motion.push(([0.0; Q], [0.0; Q]));
+                        continue;
+                    }
+                    let OnPanel { at_nodes, at_end, pushed } = mode;
+                    let mut by_amplitude = work_of_unit_forces(&at_nodes.0, at_end.0);
+                    let mut by_rate = work_of_unit_forces(&at_nodes.1, at_end.1);
+                    for n in 0..Q {
+                        let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+                        by_amplitude[n] = -sign * system.square[k] * pushed.amplitude[n] - by_amplitude[n];
+                        by_rate[n] = sign * pushed.rate[n] - by_rate[n];
+                    }
+                    by_motion.push((by_amplitude, by_rate));
+                }
+            },
+        );
         let pairs = std::iter::repeat_with(OnceLock::new).take(system.links.len().pow(2)).collect();
-        Excess { h, by_motion: modes.enumerate().map(of).collect(), pairs }
+        Excess { h, by_motion, pairs }
     }
 
     /// Whether the work of two contacts, the second not after the first, has been computed.
@@ -81,15 +88,21 @@ impl Excess {
         self.pairs[c * system.links.len() + other].get_or_init(|| {
             let mut work = Box::new([[0.0; Q]; Q]);
             let shared = system.links[c].shared(&system.links[other]);
-            for (k, weight) in shared.filter(|(k, weight)| *weight != 0.0 && !system.modes[*k].is_rigid()) {
-                let Pushed { amplitude, rate } = pushed(k);
-                for m in 0..Q {
-                    let (by_amplitude, by_rate) = (weight * system.square[k] * amplitude[m], weight * rate[m]);
-                    for n in 0..Q {
-                        work[m][n] -= 0.5 * (by_amplitude * amplitude[n] + by_rate * rate[n]);
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (k, weight) in shared.filter(|(k, weight)| *weight != 0.0 && !system.modes[*k].is_rigid()) {
+                        let Pushed { amplitude, rate } = pushed(k);
+                        let (by_amplitude, by_rate) = (0.5 * weight * system.square[k], 0.5 * weight);
+                        for m in 0..Q {
+                            let (by_amplitude, by_rate) = (by_amplitude * amplitude[m], by_rate * rate[m]);
+                            for n in 0..Q {
+                                work[m][n] -= by_amplitude * amplitude[n] + by_rate * rate[n];
+                            }
+                        }
                     }
-                }
-            }
+                },
+            );
             for m in 0..Q {
                 for n in 0..Q {
                     work[m][n] -= lost.map_or(0.0, |lost| lost[m][n]);

@@ -11,7 +11,7 @@ use crate::panel::forcing::{ByParts, Compliance, Order, Way, by_quadrature, by_s
 use crate::panel::legendre::{
     BASIS, Legendre, Matrix, Nodal, Q, TAYLOR, add_motion, apply, dot, leave_out_infinite, work_of_unit_forces,
 };
-use crate::panel::oscillator::BodyMode;
+use crate::panel::oscillator::{BodyMode, Propagator, propagate};
 use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
 use std::array;
@@ -47,6 +47,24 @@ struct Expanded {
     elastic_rates: Vec<OnceLock<Box<Matrix>>>,
     /// The modes that are integrated by parts, once responses with other weights are requested.
     by_parts: OnceLock<Vec<ByParts>>,
+}
+
+/// Free motion over `h`, from its table if there is one; the bits are the same.
+pub(crate) struct Over<'a> {
+    h: f64,
+    known: Option<&'a Rotation>,
+}
+
+impl Over<'_> {
+    /// Without a table.
+    pub fn any(h: f64) -> Over<'static> {
+        Over { h, known: None }
+    }
+
+    #[inline(always)]
+    fn of(&self, system: &System, k: usize) -> Propagator {
+        self.known.map_or_else(|| propagate(&system.modes[k], self.h), |rotation| rotation.of(k))
+    }
 }
 
 #[derive(Default)]
@@ -152,11 +170,12 @@ impl Tables {
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
         let mut found = None;
         let expanded = self.level(j).expanded.get_or_init(|| {
-            let (forced, sums) = Forced::new(system, self.steps.step_s(j), self.rotation(system, j + 1), &weights);
+            let half = Over { h: 0.5 * self.steps.step_s(j), known: self.level(j + 1).rotation.get() };
+            let (forced, sums) = Forced::new(system, &self.over_panel(j), &half, &weights);
             found = Some(sums);
             Expanded { forced, elastic: unset(count), elastic_rates: unset(count), by_parts: OnceLock::new() }
         });
-        let again = || again(system, self.steps.step_s(j), (&weights, Order::Displacement), &expanded.by_parts);
+        let again = || again(system, &self.over_panel(j), (&weights, Order::Displacement), &expanded.by_parts);
         let found = found.unwrap_or_else(again);
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
@@ -173,10 +192,14 @@ impl Tables {
         let wanted = |pair: &(usize, usize)| system.share_elastic_modes(pair.0, pair.1) && rates(*pair).get().is_none();
         let pairs: Vec<(usize, usize)> = pairs.iter().copied().filter(wanted).collect();
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
-        let found = again(system, self.steps.step_s(j), (&weights, Order::Velocity), &expanded.by_parts);
+        let found = again(system, &self.over_panel(j), (&weights, Order::Velocity), &expanded.by_parts);
         for (pair, nodes) in pairs.into_iter().zip(found) {
             let _ = rates(pair).set(Box::new(nodes));
         }
+    }
+
+    fn over_panel(&self, j: i32) -> Over<'_> {
+        Over { h: self.steps.step_s(j), known: self.level(j).rotation.get() }
     }
 
     fn expanded(&self, j: i32) -> Option<&Expanded> {
@@ -304,24 +327,24 @@ fn alike(modes: &[BodyMode], body: Range<usize>, h: f64) -> impl Iterator<Item =
 }
 
 impl Forced {
-    /// Every mode on a panel of `h`, with responses at the nodes summed over the modes with these weights, gathered in one
+    /// Every mode on a panel, with responses at the nodes summed over the modes with these weights, gathered in one
     /// pass; `half` is free motion over half of it. Rigid modes take no part in the responses.
-    pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<[Nodal; Q]>) {
-        let n = system.modes.len();
+    pub fn new(system: &System, panel: &Over, half: &Over, weights: &[Vec<f64>]) -> (Forced, Vec<[Nodal; Q]>) {
+        let (n, h) = (system.modes.len(), panel.h);
         let mut forced =
             Forced { at_nodes: vec![([0.0; Q], [0.0; Q]); n], amplitude: Rows::new(n), rate: Rows::new(n) };
         let mut sums = Sums::new(system, h, (weights, Order::Displacement));
-        for body in &system.bodies {
-            let mut terms = 2;
-            for (modes, way) in alike(&system.modes, body.clone(), h) {
-                let first = modes.start;
-                let mode = &system.modes[first];
-                let part = match way {
-                    Way::ByParts => {
-                        vectorized(
-                            #[inline(always)]
-                            || {
-                                let by_parts = lanes_by_parts(system, modes.clone(), h);
+        vectorized(
+            #[inline(always)]
+            || {
+                for body in &system.bodies {
+                    let mut terms = 2;
+                    for (modes, way) in alike(&system.modes, body.clone(), h) {
+                        let first = modes.start;
+                        let mode = &system.modes[first];
+                        let part = match way {
+                            Way::ByParts => {
+                                let by_parts = lanes_by_parts(system, modes.clone(), panel);
                                 sums.add_by_parts(modes.clone(), &by_parts);
                                 let (displacement, velocity) = by_parts.end();
                                 forced.amplitude.set_lanes(first, modes.len(), &displacement);
@@ -329,20 +352,20 @@ impl Forced {
                                 for (l, at_nodes) in forced.at_nodes[modes].iter_mut().enumerate() {
                                     *at_nodes = by_parts.at_nodes(l);
                                 }
-                            },
-                        );
-                        continue;
+                                continue;
+                            }
+                            Way::Series => by_series(mode, h, &half.of(system, first), &mut terms),
+                            Way::Quadrature => by_quadrature(mode, h),
+                        };
+                        sums.add_one(first, way);
+                        forced.at_nodes[first] = part.at_nodes;
+                        forced.amplitude.set(first, part.end.0);
+                        forced.rate.set(first, part.end.1);
                     }
-                    Way::Series => by_series(mode, h, &half.of(first), &mut terms),
-                    Way::Quadrature => by_quadrature(mode, h),
-                };
-                sums.add_one(first, way);
-                forced.at_nodes[first] = part.at_nodes;
-                forced.amplitude.set(first, part.end.0);
-                forced.rate.set(first, part.end.1);
-            }
-            sums.end_body();
-        }
+                    sums.end_body();
+                }
+            },
+        );
         (forced, sums.at_nodes())
     }
 
@@ -371,9 +394,9 @@ impl Forced {
     }
 
     /// Motion of a mode at the end under unit Legendre forces.
+    #[inline(always)]
     fn pushed(&self, k: usize) -> Pushed {
-        let [amplitude, rate] = [&self.amplitude, &self.rate].map(|table| table.part(k, 1).map(|row| row[0]));
-        Pushed { amplitude, rate }
+        Pushed { amplitude: self.amplitude.at(k), rate: self.rate.at(k) }
     }
 
     /// Change of `sum_k psi_k a_k` by free motion at the nodes.
@@ -432,14 +455,20 @@ impl Forced {
     }
 }
 
-/// Responses at the nodes summed over the modes with other weights, of a panel of `h` again, or their rates: the responses are to the
-/// last bit those of [`Forced::new`].
-fn again(system: &System, h: f64, sums: (&[Vec<f64>], Order), by_parts: &OnceLock<Vec<ByParts>>) -> Vec<[Nodal; Q]> {
+/// Responses at the nodes summed over the modes with other weights, of a panel again, or their rates: the responses are to the last bit
+/// those of [`Forced::new`].
+fn again(
+    system: &System,
+    panel: &Over,
+    sums: (&[Vec<f64>], Order),
+    by_parts: &OnceLock<Vec<ByParts>>,
+) -> Vec<[Nodal; Q]> {
+    let h = panel.h;
     let groups = || system.bodies.iter().flat_map(|body| alike(&system.modes, body.clone(), h));
     let new = |(modes, _)| {
         vectorized(
             #[inline(always)]
-            || lanes_by_parts(system, modes, h),
+            || lanes_by_parts(system, modes, panel),
         )
     };
     let by_parts = by_parts.get_or_init(|| groups().filter(|(_, way)| *way == Way::ByParts).map(new).collect());
@@ -463,10 +492,14 @@ fn again(system: &System, h: f64, sums: (&[Vec<f64>], Order), by_parts: &OnceLoc
 
 /// At most [`LANES`] modes by parts; the last ones are padded by modes that get no weight.
 #[inline(always)]
-fn lanes_by_parts(system: &System, modes: Range<usize>, h: f64) -> ByParts {
+fn lanes_by_parts(system: &System, modes: Range<usize>, panel: &Over) -> ByParts {
     let mut padded = [system.modes[modes.start]; LANES];
-    padded[..modes.len()].copy_from_slice(&system.modes[modes]);
-    ByParts::new(&padded, h)
+    padded[..modes.len()].copy_from_slice(&system.modes[modes.clone()]);
+    let mut over_panel = [panel.of(system, modes.start); LANES];
+    for l in 1..modes.len() {
+        over_panel[l] = panel.of(system, modes.start + l);
+    }
+    ByParts::new(&padded, &over_panel, panel.h)
 }
 
 /// Partial sums of responses over the modes, for each list of weights.
@@ -544,7 +577,7 @@ impl Sums<'_> {
 
 /// Rates at the nodes summed over the elastic modes with these weights, on a panel of `h`.
 pub(crate) fn rates_at_nodes(system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<Matrix> {
-    again(system, h, (weights, Order::Velocity), &OnceLock::new())
+    again(system, &Over::any(h), (weights, Order::Velocity), &OnceLock::new())
 }
 
 /// Responses at the nodes, or their rates, with those of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.

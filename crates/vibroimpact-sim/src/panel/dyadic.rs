@@ -140,7 +140,7 @@ impl Rotation {
 
     /// Free motion of one mode.
     pub fn of(&self, k: usize) -> Propagator {
-        let [p11_less_1, p12, p21, p22] = self.rows.part(k, 1).map(|row| row[0]);
+        let [p11_less_1, p12, p21, p22] = self.rows.at(k);
         Propagator { p11_less_1, p12, p21, p22 }
     }
 }

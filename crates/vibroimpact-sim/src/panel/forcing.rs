@@ -41,6 +41,7 @@ impl Way {
 
 /// One slow mode on a step of `h`; `half` is its free motion over `h/2`. A mode needs no fewer `terms` of its series about the
 /// middle than a slower one.
+#[inline(always)]
 pub(crate) fn by_series(mode: &BodyMode, h: f64, half: &Propagator, terms: &mut usize) -> Part {
     // as many even as odd ones
     *terms = BASIS.terms::<HALF_SERIES>(0.5 * rate(mode) * h, *terms).next_multiple_of(2);
@@ -141,11 +142,14 @@ impl Compliance {
         }
         for (column, start) in self.legendre.iter_mut().zip(&modes.at_start) {
             let start = differentiated(*start) * weights;
+            // a copy, to be kept in registers
+            let mut sums = *column;
             for (l, (nodes_re, nodes_im)) in modes.to_nodes.iter().enumerate() {
                 for i in 0..Q {
-                    column[i] -= start.re.0[l] * nodes_im[i] + start.im.0[l] * nodes_re[i];
+                    sums[i] -= start.re.0[l] * nodes_im[i] + start.im.0[l] * nodes_re[i];
                 }
             }
+            *column = sums;
         }
     }
 
@@ -213,6 +217,7 @@ impl Compliance {
 }
 
 /// By power series, from the free motion in the middle of the step.
+#[inline(always)]
 fn slow(mode: &BodyMode, h: f64, middle: &Propagator, terms: usize) -> Part {
     let (square, damping) = square_and_damping(mode, h);
 
@@ -224,7 +229,7 @@ fn slow(mode: &BodyMode, h: f64, middle: &Propagator, terms: usize) -> Part {
         (s, v) = (v * reciprocal, (-damping * v - square * s) * reciprocal);
     }
     let series = &series[..terms];
-    let sums @ [even, odd] = &[0, 1].map(|parity| weighted_sums(series, parity));
+    let sums @ [even, odd] = &[weighted_sums(series, 0), weighted_sums(series, 1)];
     let square_per_second = square / h;
     // the even part is the same in both halves, the odd part changes its sign; those of the integral of `S`, which is
     // taken from the middle, are odd and even
@@ -254,6 +259,7 @@ fn square_and_damping(mode: &BodyMode, h: f64) -> (f64, f64) {
 
 /// Even or odd terms: of `S` at the nodes of the second half, of its integral from the middle to there, and of `S` and
 /// `h S'` integrated with the Legendre polynomials.
+#[inline(always)]
 fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
     let (mut s_nodes, mut to_nodes, mut s_end, mut v_end) = ([0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2]);
     for (terms, weights) in series.chunks_exact(2).zip(BASIS.about_middle.chunks_exact(2)) {
@@ -285,8 +291,9 @@ pub(crate) struct ByParts {
 }
 
 impl ByParts {
+    /// Modes on a step of `h`, with their free motion over the whole step.
     #[inline(always)]
-    pub fn new(modes: &[BodyMode; LANES], h: f64) -> ByParts {
+    pub fn new(modes: &[BodyMode; LANES], over_step: &[Propagator; LANES], h: f64) -> ByParts {
         let sigma = Lanes::of(|l| modes[l].damping_ratio * modes[l].omega_rad_s);
         let omega_d = Lanes::of(|l| {
             let BodyMode { omega_rad_s, damping_ratio } = modes[l];
@@ -295,10 +302,11 @@ impl ByParts {
         let lambda = ComplexLanes { re: -sigma, im: omega_d };
         let inverse = ComplexLanes::of(|l| (lambda.of_lane(l) * h).inv());
         let scale = Lanes::of(|l| h / omega_d.0[l]);
+        let [p12, p22] = [Lanes::of(|l| over_step[l].p12), Lanes::of(|l| over_step[l].p22)];
+        let to_end = ComplexLanes { re: p22 + sigma * p12, im: omega_d * p12 };
         let mut to_nodes = [([0.0; Q], [0.0; Q]); LANES];
-        let mut to_end = [Complex64::ZERO; LANES];
         for l in 0..LANES {
-            (to_nodes[l], to_end[l]) = exponentials(sigma.0[l] * h, omega_d.0[l] * h);
+            to_nodes[l] = exponentials(sigma.0[l] * h, omega_d.0[l] * h, to_end.of_lane(l));
         }
         // both obey the recurrence of the spherical Bessel functions, in the direction in which it is stable
         let (mut at_end, mut at_start) = ([inverse; Q], [inverse; Q]);
@@ -309,7 +317,6 @@ impl ByParts {
             at_end[n + 1] = at_end[n - 1] + factor * at_end[n];
             at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
         }
-        let to_end = ComplexLanes::of(|l| to_end[l]);
         ByParts { sigma, omega_d, lambda, inverse, scale, to_nodes, to_end, at_end, at_start }
     }
 
@@ -338,23 +345,21 @@ impl ByParts {
     }
 }
 
-/// `e^{(-decay + i turn) c}` at the nodes, real and imaginary parts, and at 1. Nodes `c` and `1 - c` share theirs.
-fn exponentials(decay: f64, turn: f64) -> ((Nodal, Nodal), Complex64) {
-    let polar = |c: f64| {
-        let (sine, cosine) = (turn * c).sin_cos();
-        (if decay == 0.0 { 1.0 } else { (-decay * c).exp() }, Complex64::new(cosine, sine))
-    };
-    let (all, whole) = polar(1.0);
+/// `e^{(-decay + i turn) c}` at the nodes, real and imaginary parts, from that at 1. Nodes `c` and `1 - c` share theirs.
+fn exponentials(decay: f64, turn: f64, whole: Complex64) -> (Nodal, Nodal) {
     let (mut re, mut im) = ([0.0; Q], [0.0; Q]);
     for i in 0..Q / 2 {
-        let (size, turned) = polar(BASIS.nodes[i]);
-        // where all of it underflows, less than 1e-160 of the second half is left
-        let rest = if all > 0.0 { all / size } else { 0.0 };
-        let other = whole * turned.conj();
-        (re[i], im[i]) = (size * turned.re, size * turned.im);
-        (re[Q - 1 - i], im[Q - 1 - i]) = (rest * other.re, rest * other.im);
+        let c = BASIS.nodes[i];
+        let (sine, cosine) = (turn * c).sin_cos();
+        let size = if decay == 0.0 { 1.0 } else { (-decay * c).exp() };
+        (re[i], im[i]) = (size * cosine, size * sine);
+        // where the size underflows, less than 1e-160 of the second half is left
+        if size > 0.0 {
+            let other = whole * Complex64::new(cosine, -sine);
+            (re[Q - 1 - i], im[Q - 1 - i]) = (other.re / size, other.im / size);
+        }
     }
-    ((re, im), all * whole)
+    (re, im)
 }
 
 /// Any mode, one node after the other.
@@ -377,7 +382,7 @@ pub(crate) fn along((way, order): (Way, Order), mode: &BodyMode, h: f64, terms: 
             by_series(mode, h, &propagate(mode, 0.5 * h), terms)
         }
         Way::ByParts => {
-            let by_parts = ByParts::new(&[*mode; LANES], h);
+            let by_parts = ByParts::new(&[*mode; LANES], &[propagate(mode, h); LANES], h);
             compliance.add_by_parts(&by_parts, &WEIGHTS);
             let (displacement, velocity) = by_parts.end();
             let end = (displacement.map(|all| all.0[1]), velocity.map(|all| all.0[1]));

@@ -30,6 +30,16 @@ impl<const R: usize> Rows<R> {
         }
     }
 
+    /// The values of all rows at `k`.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> [f64; R] {
+        let mut values = [0.0; R];
+        for (row, value) in values.iter_mut().enumerate() {
+            *value = self.values[row * self.length + k];
+        }
+        values
+    }
+
     /// A part of a row from the value `first` on.
     #[inline(always)]
     fn row(&self, row: usize, first: usize, count: usize) -> &[f64] {

@@ -3,7 +3,7 @@
 use crate::assembly::change::Change;
 use crate::assembly::collocate::Mobility;
 use crate::assembly::system::{Span, System};
-use crate::assembly::tables::{Forced, rates_at_nodes, with_rigid_modes};
+use crate::assembly::tables::{Forced, Over, rates_at_nodes, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
 use crate::panel::dyadic::{Rotation, Steps};
 use crate::panel::forcing::Order;
@@ -129,7 +129,7 @@ impl Expansions {
             }
         }
         // a flight needs nothing but free motion
-        let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
+        let expand = || Forced::new(system, &Over::any(h), &Over::any(0.5 * h), &weights);
         let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
         let with_rigid = |elastic: Vec<Matrix>, order: Order| -> Vec<Matrix> {
             let of = |(elastic, weights): (Matrix, &Vec<f64>)| {
