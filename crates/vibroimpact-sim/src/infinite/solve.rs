@@ -4,7 +4,7 @@ use super::contact::{Contact, Ending, Extent, Touch};
 use super::history::History;
 use super::kernel::Kernel;
 use super::law::Scaled;
-use super::problem::{S_RANGE, Settings, Structure};
+use super::problem::{NODES, S_RANGE, Settings, Structure};
 use super::receptance::{Receptance, Scale, Term, UNIT};
 use super::solution::{Flight, Outcome, Solution, SubImpact};
 use crate::StopReason;
@@ -89,14 +89,17 @@ fn with_hertz<R>(structure: Structure, s: f64, then: impl FnOnce(&Problem<'_>) -
 fn solved(problem: &Problem<'_>, settings: &Settings) -> Solution {
     let mut solution = run(problem, settings);
     if settings.estimate_uncertainty {
-        solution.compare(&run(problem, &finer(settings)), settings.tolerance);
+        solution.compare(&run(problem, &other(settings)), settings.tolerance);
     }
     solution
 }
 
-/// The settings of the solution with which one is compared.
-fn finer(settings: &Settings) -> Settings {
-    Settings { nodes: (settings.nodes + 4).min(32), tolerance: (0.1 * settings.tolerance).max(1e-14), ..*settings }
+/// The settings of the solution with which one is compared: four more nodes, or four fewer where more are not allowed, since
+/// the same nodes at the smallest tolerance would repeat the solution to the last bit.
+fn other(settings: &Settings) -> Settings {
+    let more = settings.nodes + 4;
+    let nodes = if NODES.contains(&more) { more } else { settings.nodes - 4 };
+    Settings { nodes, tolerance: (0.1 * settings.tolerance).max(1e-14), ..*settings }
 }
 
 /// Solves once, without error estimate.
@@ -199,4 +202,19 @@ pub(super) fn speed_after_first(s: f64, settings: &Settings) -> Option<f64> {
         matches!(ending, Ending::Released(_)).then(|| contact.departure().0.body)
     };
     with_hertz(Structure::Beam, s, following).ok()?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No solution is compared with itself.
+    #[test]
+    fn the_other_solution_is_another() {
+        for nodes in NODES {
+            let settings = Settings { nodes, tolerance: 1e-14, ..Settings::default() };
+            let compared = other(&settings);
+            assert!(compared.nodes != nodes && NODES.contains(&compared.nodes), "{nodes}");
+        }
+    }
 }
