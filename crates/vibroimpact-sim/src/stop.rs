@@ -18,7 +18,8 @@ pub enum StopReason {
     Flight,
     /// Further contacts depend on digits below rounding.
     DigitsExhausted,
-    /// A contact on an infinite structure still lasts after 300 of its natural times, and it is not known whether it ends.
+    /// A contact on an infinite structure still lasts after 300 times the sum of its natural time, the relaxation time of its
+    /// damping and, on a plate, the time in which the plate takes the speed of the striker, and it is not known whether it ends.
     ContactLasts,
     /// The contact law violates its contract; [`contact_models::check_contract`] reports which part, and where.
     Law,

@@ -267,6 +267,64 @@ fn agrees_with_the_equations_of_a_plate() {
     }
 }
 
+/// A linear spring on a plate: `x'' + k x' + k x = 0`. Below `k = 4` the body leaves after `pi / w`, `w = sqrt(k - k^2 / 4)`, with
+/// `exp(-k pi / (2 w))` of its speed, however little that is; from there on it stays for good.
+#[test]
+fn a_spring_on_a_plate_by_its_closed_form() {
+    for k in [0.1, 1.0, 3.9, 3.99, 3.999_f64] {
+        let solution = run(&power(0.0), &LinearSpring::new(k).unwrap());
+        let w = (k - 0.25 * k * k).sqrt();
+        let (duration, ratio) = (PI / w, (-0.5 * k * PI / w).exp());
+        let found = solution.sub_impacts[0].duration.unwrap();
+        // near k = 4 a relative error of k grows by 4 / (4 - k)
+        let allowed = 1e-12 * 4.0 / (4.0 - k);
+        assert!((found / duration - 1.0).abs() < allowed, "{k}: {found} {duration}");
+        let found = solution.rebound_ratio().unwrap();
+        assert!((found / ratio - 1.0).abs() < allowed * (1.0 + duration), "{k}: {found:e} {ratio:e}");
+    }
+    for k in [4.1, 1e2, 1e6] {
+        let solution = run(&power(0.0), &LinearSpring::new(k).unwrap());
+        assert_eq!(solution.outcome, Outcome::Stopped(StopReason::ContactLasts), "{k}");
+        assert!(solution.known_until > 300.0 && solution.panels_tried < 600, "{k}: {}", solution.panels_tried);
+    }
+}
+
+/// A plate takes the speed of a stiffly attached body in units of `T`, not in natural times of the contact: Hertz contact, and
+/// with it Hunt and Crossley's, ends long after 300 of these. The rebound ratio tends to `0.679293 / S`.
+#[test]
+fn stiff_contacts_on_a_plate_end() {
+    for k in [1e2, 1e4, 1e6_f64] {
+        let hertz = run(&power(0.0), &Hertz::new(k).unwrap());
+        let damped = run(&power(0.0), &HuntCrossley::new(k, 1.5, 0.5).unwrap());
+        let limit = 0.679_293_063_936_48 / (k * k);
+        for (solution, allowed) in [(hertz, 1e-10), (damped, 10.0 / k)] {
+            let found = solution.rebound_ratio().unwrap();
+            assert!((found / limit - 1.0).abs() < allowed, "{k}: {found:e} {limit:e}");
+            assert!(solution.panels_tried < 100, "{k}: {}", solution.panels_tried);
+        }
+    }
+}
+
+/// Springs and dashpots of sizes far apart on beam and plate: the panels do not resolve rounding (the softest would take more than
+/// 200,000), and rounding is not taken for a fault of the law.
+#[test]
+fn panels_of_springs_and_dashpots_do_not_resolve_rounding() {
+    for receptance in [power(0.5), power(0.0)] {
+        for k in [1e-20, 1e-10, 1e-3, 1.0, 1e3, 1e10, 1e20, 1e30] {
+            for c in [1e-30, 1e-10, 1e-3, 1.0, 1e3, 1e10] {
+                let once = Settings { estimate_uncertainty: false, max_panels: 5_000, ..Settings::default() };
+                let solution = solve_law(&receptance, &UNIT, &KelvinVoigt::new(k, c).unwrap(), &once).unwrap();
+                let expected = [
+                    Outcome::Rebound,
+                    Outcome::Stopped(StopReason::ContactLasts),
+                    Outcome::Stopped(StopReason::DigitsExhausted),
+                ];
+                assert!(expected.contains(&solution.outcome), "{receptance:?} {k:e} {c:e}: {:?}", solution.outcome);
+            }
+        }
+    }
+}
+
 /// Two beams, or terms of any powers, act together: a structure whose terms are divided into parts has the same impact, and the
 /// unit of time is that at which the structure has moved as far as the striker.
 #[test]

@@ -204,6 +204,23 @@ fn settings_do_not_change_the_outcome() {
     }
 }
 
+/// A stiff contact with a plate leaves the body a speed that falls as `1/S`: it keeps its digits, at every tolerance and number of
+/// nodes, without panels that resolve rounding (28 nodes at 1e-14 took 200,000).
+#[test]
+fn a_stiff_contact_with_a_plate_keeps_its_digits() {
+    for nodes in [8, 16, 20, 24, 28, 32] {
+        for tolerance in [1e-10, 1e-14] {
+            let solution =
+                solve(Structure::Plate, 1e10, &Settings { nodes, tolerance, ..Settings::default() }).unwrap();
+            let ratio = 1e10 * solution.rebound_ratio().unwrap();
+            let allowed = if tolerance < 1e-12 { 1e-12 } else { 2e-9 };
+            assert!((ratio / 0.679_293_063_936_485 - 1.0).abs() < allowed, "{nodes} {tolerance:e}: {ratio}");
+            assert!((solution.sub_impacts[0].duration.unwrap() / 22.667_876_556_314_86 - 1.0).abs() < allowed);
+            assert!(solution.panels_tried < 2_000, "{nodes} {tolerance:e}: {}", solution.panels_tried);
+        }
+    }
+}
+
 /// Input out of range is reported, not computed.
 #[test]
 fn bad_input_is_refused() {

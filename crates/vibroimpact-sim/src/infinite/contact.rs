@@ -31,7 +31,7 @@ use contact_models::{After, Branch, Memory};
 const MOST_AT_ONCE: usize = 16;
 /// A contact is followed for this many of its natural times.
 const LONGEST: f64 = 300.0;
-/// The shortest panel, as a part of the natural time.
+/// The shortest panel, as a part of the time in which the law begins to act.
 const SHORTEST: f64 = 1e-12;
 /// Panels after which the origin of time moves.
 const MOST_PANELS: usize = 12;
@@ -100,6 +100,8 @@ struct Trial {
     impulse_scale: f64,
     /// Impulse that the polynomial of the force does not resolve, relative to the allowed one.
     unresolved: f64,
+    /// Whether it is allowed because it may be rounding.
+    is_rounding: bool,
 }
 
 /// The motion on the last panel that was solved, taken or not.
@@ -144,6 +146,8 @@ pub(super) struct Contact<'a> {
     /// Compression at the origin, and the rate of compression to which `past` leads there.
     x_origin: f64,
     slope: f64,
+    /// The size of the terms from which the two were computed.
+    origin_terms: [f64; 2],
     /// Panels that are not impulses yet, and their after-effect at the origin.
     near: Vec<Solved>,
     near_at_origin: f64,
@@ -156,6 +160,8 @@ pub(super) struct Contact<'a> {
     /// Compression and rate at present.
     x: f64,
     rate: f64,
+    /// Force at the end of the last panel.
+    force: f64,
     falling: bool,
     /// Slowly forgotten maximum of the closing speed and of the impulses of panels, the scale of the resolution.
     impulse_scale: f64,
@@ -190,6 +196,7 @@ impl<'a> Contact<'a> {
             origin: 0.0,
             x_origin: level,
             slope: touch.closing,
+            origin_terms: [0.0; 2],
             near: Vec::new(),
             near_at_origin: 0.0,
             panels: 0,
@@ -198,6 +205,7 @@ impl<'a> Contact<'a> {
             passed_since_touch: Passed::default(),
             x: level,
             rate: touch.closing,
+            force: 0.0,
             touch,
             falling: false,
             impulse_scale: touch.closing,
@@ -217,9 +225,11 @@ impl<'a> Contact<'a> {
 
     /// Integrates until the contact or the run ends.
     pub fn run(&mut self, mut extent: Extent, budget: usize) -> Ending {
-        let NaturalTimes { contact: natural, relaxation } = self.natural_times;
-        let shortest = SHORTEST * natural;
-        let (mut kind, mut h, mut at_once) = (Kind::Start, natural, 0);
+        let NaturalTimes { contact: natural, onset, relaxation } = self.natural_times;
+        let shortest = SHORTEST * onset;
+        // in which a plate takes the speed of a body that is attached to it: the force on a stiff contact falls exponentially
+        let structure = if self.kernel.has_after_effect() { 0.0 } else { self.kernel.instant() };
+        let (mut kind, mut h, mut at_once) = (Kind::Start, onset, 0);
         if self.kernel.instant() == 0.0 {
             // a force that begins with a jump is resolved in its impulse, which may leave out its first moment
             self.peak_force = self.law.force(&self.branch, self.x, self.rate).force.max(0.0);
@@ -267,10 +277,20 @@ impl<'a> Contact<'a> {
                 h = (h * (0.9 * trial.unresolved.powf(order)).clamp(0.25, 0.8)).max(shortest);
                 continue;
             }
-            h *= (0.95 * trial.unresolved.max(1e-30).powf(order)).clamp(1.0, 2.0);
+            if self.would_lose_digits(&trial) && h > shortest {
+                h = (0.5 * h).max(shortest);
+                continue;
+            }
+            // rounding does not tell how long a panel may be, and is less on a longer one
+            let growth = if trial.is_rounding { 2.0 } else { 0.95 * trial.unresolved.max(1e-30).powf(order) };
+            h *= growth.clamp(1.0, 2.0);
+            let is_tension = self.is_tension(&trial);
             self.take(trial);
             if self.pulls() {
                 return stopped(StopReason::Law);
+            }
+            if is_tension {
+                return stopped(StopReason::DigitsExhausted);
             }
             (kind, at_once) = (Kind::Middle, 0);
             if extent.to_minimum && self.first_minimum().is_some() {
@@ -282,7 +302,7 @@ impl<'a> Contact<'a> {
                     watch.lasting().then_some(Outcome::Sustained)
                 }
                 None => {
-                    let long = self.now() > LONGEST * (natural + relaxation);
+                    let long = self.now() > LONGEST * (natural + relaxation + structure);
                     long.then_some(Outcome::Stopped(StopReason::ContactLasts))
                 }
             };
@@ -291,9 +311,10 @@ impl<'a> Contact<'a> {
             {
                 return Ending::Ended(outcome);
             }
-            if self.panels >= MOST_PANELS {
+            if self.panels >= MOST_PANELS || self.has_lost_digits() {
                 let behind = |panel: &Solved| if panel.kind == Kind::Start { 1.5 } else { 0.5 } * panel.h;
                 let present = self.since;
+                self.x = self.compression_by_law();
                 self.move_origin(|panel| present - panel.end >= behind(panel));
                 self.past.condense();
                 let reach = REACH * self.natural_times.contact;
@@ -301,6 +322,19 @@ impl<'a> Contact<'a> {
             }
         }
         stopped(StopReason::Steps)
+    }
+
+    /// Whether the rate to which the past leads has lost a digit since the origin. Without an after-effect it may fall
+    /// exponentially, and the origin moves along at no cost.
+    fn has_lost_digits(&self) -> bool {
+        !self.kernel.has_after_effect() && self.passed.impulse > 0.5 * self.slope.abs()
+    }
+
+    /// Whether that rate would lose more than a digit on one panel.
+    fn would_lose_digits(&self, trial: &Trial) -> bool {
+        let before = self.slope - self.passed.impulse;
+        let impulse = trial.h * dot(self.kernel.totals(trial.kind).0, &trial.nodal.force);
+        !self.kernel.has_after_effect() && (before - impulse).abs() < 0.05 * before.abs()
     }
 
     /// Continues on another branch of the law.
@@ -312,6 +346,13 @@ impl<'a> Contact<'a> {
     /// Whether the law gave a tensile force on the last panel, which is not allowed.
     fn pulls(&self) -> bool {
         self.record.last().is_some_and(|panel| panel.force.iter().any(|f| *f < -1e-6 * self.peak_force))
+    }
+
+    /// Whether the force is tensile throughout a panel, by more than the tolerance, and rounding hid from the event function of
+    /// the law that it would release.
+    fn is_tension(&self, trial: &Trial) -> bool {
+        let impulse = trial.h * dot(self.kernel.totals(trial.kind).0, &trial.nodal.force);
+        trial.nodal.force.iter().all(|force| *force < 0.0) && -impulse > self.settings.tolerance * trial.impulse_scale
     }
 
     /// Sets the equations of a panel from now on.
@@ -352,7 +393,6 @@ impl<'a> Contact<'a> {
             x: elapsed.iter().map(|e| self.x + self.rate * h * e).collect(),
             rate: vec![if self.follows_rate { self.rate } else { 0.0 }; elapsed.len()],
             force: vec![0.0; self.kernel.tables.p],
-            stiffness: 0.0,
         }
     }
 
@@ -391,10 +431,21 @@ impl<'a> Contact<'a> {
             Some(Hint { kind, start: self.since, h, x_series: x_series.clone(), rate_series: rate_series.clone() });
         let f_series = tables.coefficients(&nodal.force);
         let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
-        let noise = 1e-15 * self.terms(h)[0] * nodal.stiffness * h;
         let impulse_scale = self.scale_after(h, &nodal.force);
-        let allowed = (self.settings.tolerance * impulse_scale).max(noise).max(f64::MIN_POSITIVE);
-        Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, impulse_scale, unresolved: tail * h / allowed })
+        let mut allowed = (self.settings.tolerance * impulse_scale).max(f64::MIN_POSITIVE);
+        let is_rounding = tail * h > allowed;
+        if is_rounding {
+            // no shorter panel resolves more than rounding leaves: of the motion, of the series, and of the compression at the
+            // start, which sets off a vibration by a stiff law
+            let terms = self.terms(h).map(|size| 1e-15 * size);
+            let of = |k: usize| self.equations.rounding(&tables.to_legendre[k * tables.p..(k + 1) * tables.p], terms);
+            let of_series = (2 * tables.p) as f64 * f64::EPSILON * largest_of(&nodal.force);
+            let of_start = terms[0] * self.equations.stiffness();
+            let rounding = of(tables.p - 1).max(of(tables.p - 2)).max(of_series).max(of_start);
+            allowed = allowed.max(h * rounding);
+        }
+        let unresolved = tail * h / allowed;
+        Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, impulse_scale, unresolved, is_rounding })
     }
 
     /// Solves the equations that are set, from a guess.
@@ -405,22 +456,26 @@ impl<'a> Contact<'a> {
 
     /// The scale of impulses after a panel with these forces.
     fn scale_after(&self, h: f64, force: &[f64]) -> f64 {
-        let largest = force.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
-        (largest * h).max(self.impulse_scale * (-0.5 * h / self.natural_times.contact).exp())
+        (largest_of(force) * h).max(self.impulse_scale * (-0.5 * h / self.natural_times.contact).exp())
     }
 
-    /// The size of the terms in the compression and its rate on a panel from now on.
+    /// The size of the terms in the compression and its rate up to a time from now on, whose rounding these have.
     fn terms(&self, h: f64) -> [f64; 2] {
+        let [x, rate] = self.terms_since_origin(h);
+        [x + self.origin_terms[0], rate + self.origin_terms[1]]
+    }
+
+    /// Those that came up since the origin.
+    fn terms_since_origin(&self, h: f64) -> [f64; 2] {
         let rate = self.slope.abs() + self.passed.impulse;
-        [self.x_origin.abs() + rate * (self.since + h), rate]
+        [self.x_origin.abs() + self.near_at_origin.abs() + rate * (self.since + h), rate]
     }
 
     /// The first boundary that a panel meets.
     fn event(&self, trial: &Trial) -> Option<Event> {
         let margins = self.law.margins(&self.branch);
         let Nodal { x, rate, .. } = &trial.nodal;
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
-        let (x_size, rate_size, [x_terms, rate_terms]) = (largest(x), largest(rate), self.terms(trial.h));
+        let (x_size, rate_size, [x_terms, rate_terms]) = (largest_of(x), largest_of(rate), self.terms(trial.h));
         let noise = |margin: &Margin| {
             let local = margin.per_compression.abs() * x_size + margin.per_rate.abs() * rate_size;
             1e-12 * local + 4e-15 * margin.size(x_terms, rate_terms + rate_size)
@@ -478,6 +533,7 @@ impl<'a> Contact<'a> {
             self.peak_force = self.peak_force.max(largest(&tables.sample, &f_series));
         }
         self.impulse_scale = impulse_scale;
+        self.force = series(&f_series, variable(kind, 1.0));
         let Passed { impulse, moment } = self.passed_since_touch;
         let (mass, lever) = self.kernel.totals(kind);
         let panel = Passed { impulse: h * dot(mass, &nodal.force), moment: h * h * dot(lever, &nodal.force) };
@@ -497,6 +553,7 @@ impl<'a> Contact<'a> {
     /// motion after all impulses remains to be computed.
     fn move_origin(&mut self, is_far: impl Fn(&Solved) -> bool) {
         let p = self.since;
+        self.origin_terms = self.terms_since_origin(0.0);
         self.slope += self.free.bend_and_gain(p).1 - self.passed.impulse;
         self.past.advance(p);
         let count = self.near.iter().take_while(|panel| is_far(panel)).count();
@@ -523,6 +580,17 @@ impl<'a> Contact<'a> {
         [self.near_at_origin] = at_origin;
     }
 
+    /// The present compression. By a stiff law the force at the end of a panel tells it with more digits than its terms have; left
+    /// uncorrected, their rounding would set off a vibration that needs short panels.
+    fn compression_by_law(&self) -> f64 {
+        let at_end = self.law.force(&self.branch, self.x, self.rate);
+        let [x_rounding, rate_rounding] = self.terms_since_origin(0.0).map(|size| 1e-15 * size);
+        let by_x = at_end.stiffness * x_rounding;
+        let matters = by_x > self.settings.tolerance * self.force.abs() && by_x > at_end.damping.abs() * rate_rounding;
+        let correction = (self.force - at_end.force) / at_end.stiffness;
+        if matters && correction.abs() < 10.0 * x_rounding { self.x + correction } else { self.x }
+    }
+
     /// The first minimum of the compression.
     pub fn first_minimum(&self) -> Option<f64> {
         self.turns.iter().find(|turn| turn.minimum).map(|turn| turn.compression)
@@ -543,14 +611,19 @@ impl<'a> Contact<'a> {
     pub fn departure(mut self) -> (Departure, History) {
         self.move_origin(|_| true);
         let free = FreeMotion::new(self.kernel, &self.past);
-        // Where the structure's speed follows from the past alone, the sum of both speeds has the digits that one minus all impulses
-        // loses as the striker slows down.
-        let body = match self.kernel.instant() {
-            0.0 => self.slope + free.structure_speed(),
-            _ => self.touch.body - self.passed_since_touch.impulse,
-        };
-        (Departure { x: self.x, rate: self.slope, body, free }, self.past)
+        // no force acts any more, so that the speed of the structure follows from the past alone: the sum of both speeds has the
+        // digits that one minus all impulses loses as the striker slows down
+        let body = self.slope + free.structure_speed();
+        (
+            Departure { x: self.x, rate: self.slope, body, terms: self.origin_terms[1] + free.structure_speed(), free },
+            self.past,
+        )
     }
+}
+
+/// The largest absolute value.
+fn largest_of(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 impl Trial {

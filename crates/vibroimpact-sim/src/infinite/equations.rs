@@ -51,8 +51,6 @@ pub(super) struct Nodal {
     pub rate: Vec<f64>,
     /// Force at the nodes.
     pub force: Vec<f64>,
-    /// The largest stiffness met.
-    pub stiffness: f64,
 }
 
 /// `f = law(x, x')` with `x` and `x'` that are affine in the nodal forces, and memory for its solution, reused from panel to
@@ -80,7 +78,6 @@ impl Equations {
             if !self.forces.iter().all(Force::is_finite) {
                 return Err(Fault::Law);
             }
-            nodal.stiffness = self.forces.iter().fold(0.0_f64, |largest, f| largest.max(f.stiffness.abs()));
             if !factors_serve && !self.factor() {
                 return Err(Fault::NotConverged);
             }
@@ -165,5 +162,34 @@ impl Equations {
         for (i, row) in rows.enumerate().rev() {
             b[i] = (b[i] - dot(&row[i + 1..p], &b[i + 1..])) * self.pivots[i];
         }
+    }
+
+    /// The largest stiffness met in the last solution.
+    pub fn stiffness(&self) -> f64 {
+        self.forces.iter().fold(0.0, |largest, force| largest.max(force.stiffness.abs()))
+    }
+
+    /// What independent errors of compression and rate at each node make of a sum of the forces that were solved last, with
+    /// these weights.
+    pub fn rounding(&self, weights: &[f64], [x, rate]: [f64; 2]) -> f64 {
+        let p = self.pivots.len();
+        let mut share = [0.0; *NODES.end()];
+        let share = &mut share[..p];
+        share.copy_from_slice(weights);
+        // the transposed equations, by the same factors
+        let rows = self.lu.chunks_exact(p.next_multiple_of(BLOCK));
+        for (i, row) in rows.clone().enumerate() {
+            share[i] *= self.pivots[i];
+            for j in i + 1..p {
+                share[j] -= row[j] * share[i];
+            }
+        }
+        for (i, row) in rows.enumerate().rev() {
+            for j in 0..i {
+                share[j] -= row[j] * share[i];
+            }
+        }
+        let error = |(share, force): (&f64, &Force)| share * (force.stiffness.abs() * x + force.damping.abs() * rate);
+        share.iter().zip(&self.forces).map(error).fold(0.0, f64::hypot)
     }
 }

@@ -20,6 +20,8 @@ pub(super) struct Departure {
     pub rate: f64,
     /// Speed of the striker towards the structure.
     pub body: f64,
+    /// Size of the terms of rate and speed.
+    pub terms: f64,
     pub free: FreeMotion,
 }
 
@@ -32,7 +34,7 @@ impl Departure {
 
     /// Whether the surfaces part, and the speed of the striker is more than the rounding of its terms, so that its sign is known.
     pub fn is_known(&self) -> bool {
-        self.rate < 0.0 && self.body.abs() > ROUNDING * self.free.structure_speed()
+        self.rate < 0.0 && self.body.abs() > ROUNDING * self.terms
     }
 
     /// Time until the compression has risen to `level` and the closing speed then, looked for from a first time on;

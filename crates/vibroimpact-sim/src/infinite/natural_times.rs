@@ -7,30 +7,32 @@ use contact_models::Branch;
 /// Times that characterise a contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NaturalTimes {
-    /// In which the law, pressed at the closing speed, would take half of that speed from the striker.
+    /// In which the law without its damping, pressed at the closing speed, would take half of that speed from the striker.
     pub contact: f64,
+    /// The same with its damping, except for what a plate gives way at once.
+    pub onset: f64,
     /// In which its damping relaxes.
     pub relaxation: f64,
 }
 
 impl NaturalTimes {
     pub fn new(kernel: &Kernel, law: &Scaled<'_>, branch: &Branch, level: f64, closing: f64) -> NaturalTimes {
+        let force = |h: f64, rate: f64| law.force(branch, level + closing * h, rate);
         // the part of half the speed that the law takes in a time
-        let taken =
-            |h: f64| law.force(branch, level + closing * h, 0.0).force * (h + kernel.value(h)) / (0.5 * closing);
-        let mut h = 2.0_f64.powi(100);
-        while h > 2.0_f64.powi(-200) && taken(h) > 1.0 {
-            h *= 0.5;
-        }
-        // between this time and twice of it, as a power
-        let (below, above) = (taken(h).ln(), taken(2.0 * h).ln());
-        let part = -below / (above - below);
-        if (0.0..1.0).contains(&part) {
-            h *= part.exp2();
-        }
-        let there = law.force(branch, level + closing * h, closing);
+        let by_spring = |h: f64| force(h, 0.0).force * (h + kernel.value(h)) / (0.5 * closing);
+        let by_both = |h: f64| {
+            let (damped, instant) = (force(h, closing), kernel.instant());
+            let damper = (damped.force - force(h, 0.0).force) / (1.0 + instant * damped.damping);
+            by_spring(h) + damper * (h + kernel.value(h) - instant) / (0.5 * closing)
+        };
+        let contact = first_one(2.0_f64.powi(100), by_spring);
+        let there = force(contact, closing);
         let relaxation = there.damping / there.stiffness;
-        NaturalTimes { contact: h, relaxation: if relaxation.is_finite() { relaxation.abs() } else { 0.0 } }
+        NaturalTimes {
+            contact,
+            onset: first_one(contact, by_both).min(contact),
+            relaxation: if relaxation.is_finite() { relaxation.abs() } else { 0.0 },
+        }
     }
 
     /// Whether the force or a boundary of a branch depends on the rate. On a branch the force does so wherever it is not zero or
@@ -40,4 +42,15 @@ impl NaturalTimes {
         let damped = [x - way, x, x + way].iter().any(|&x| law.force(branch, x, closing).damping != 0.0);
         damped || law.margins(branch).iter().any(|margin| margin.per_rate != 0.0)
     }
+}
+
+/// The time, up to the latest, at which a growing function reaches 1; between halvings of the latest, as a power.
+fn first_one(latest: f64, taken: impl Fn(f64) -> f64) -> f64 {
+    let mut h = latest;
+    while h > 2.0_f64.powi(-250) && taken(h) > 1.0 {
+        h *= 0.5;
+    }
+    let (below, above) = (taken(h).ln(), taken(2.0 * h).ln());
+    let part = -below / (above - below);
+    if (0.0..1.0).contains(&part) { h * part.exp2() } else { h }
 }

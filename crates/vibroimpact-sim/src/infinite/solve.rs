@@ -20,8 +20,9 @@ const SOONEST: f64 = 1e-6;
 /// Solves the impact of a striker on an infinite structure with any contact law. The solution is in the units of
 /// [`Receptance::scale`]; its [`s`](Solution::s) is `None`, as a law other than Hertz's has no such number.
 ///
-/// Whether a contact that lasts ever ends is known for Hertz contact only (see [`solve`]). Here it is computed for 300 of its
-/// natural times and up to [`horizon`](Settings::horizon), and the run then stops ([`StopReason::ContactLasts`]).
+/// Whether a contact that lasts ever ends is known for Hertz contact only (see [`solve`]). Here it is computed for 300 times
+/// the sum of its natural time, the relaxation time of its damping and, on a plate, the unit of time, and up to
+/// [`horizon`](Settings::horizon), and the run then stops ([`StopReason::ContactLasts`]).
 ///
 /// # Errors
 /// [`InvalidInput`] if a setting, mass or speed is out of range.
