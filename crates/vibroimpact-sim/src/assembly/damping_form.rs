@@ -12,7 +12,8 @@
 //!
 //! - a mode that turns by at most [`SLOW`] rad: Gauss quadrature, with the rates from their power series;
 //! - a faster one: `S' = Re(c e^{z x})`, and `v_n` is a polynomial and a multiple of the same exponential (integration by
-//!   parts, as in [`crate::panel::forcing`]), so each product has a closed integral;
+//!   parts, as in [`crate::panel::forcing`]), so each product has a closed integral. Only a few numbers of the polynomials depend on
+//!   the mode, so that their products are summed over the modes before they are integrated;
 //! - a faster one that vibrates little or not at all: quadrature on panels that grow away from the start.
 
 use crate::panel::forcing::rate;
