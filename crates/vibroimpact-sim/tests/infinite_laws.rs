@@ -325,6 +325,21 @@ fn panels_of_springs_and_dashpots_do_not_resolve_rounding() {
     }
 }
 
+/// A body that is attached to a beam by a strong dashpot and hardly any spring never leaves. Its force falls until it is smaller
+/// than its rounding, which is no reason to release it.
+#[test]
+fn no_rebound_follows_from_a_force_below_its_rounding() {
+    let once = Settings { estimate_uncertainty: false, max_panels: 5_000, ..Settings::default() };
+    let solution = solve_law(&power(0.5), &UNIT, &KelvinVoigt::new(1e-20, 1e30).unwrap(), &once).unwrap();
+    assert_eq!(solution.outcome, Outcome::Stopped(StopReason::DigitsExhausted));
+    assert!(solution.known_until > 1e30, "{:e}", solution.known_until);
+    // long before, the force was that of an attached body, t^(-3/2) / 4
+    for t in [1e10_f64, 1e20, 1e28] {
+        let force = 4.0 * t.powf(1.5) * solution.at(t).unwrap().force;
+        assert!((force - 1.0).abs() < 1e-4, "{t:e}: {force}");
+    }
+}
+
 /// Two beams, or terms of any powers, act together: a structure whose terms are divided into parts has the same impact, and the
 /// unit of time is that at which the structure has moved as far as the striker.
 #[test]

@@ -33,6 +33,8 @@ const MOST_AT_ONCE: usize = 16;
 const LONGEST: f64 = 300.0;
 /// The shortest panel, as a part of the time in which the law begins to act.
 const SHORTEST: f64 = 1e-12;
+/// Least ratio of the force and its last two Legendre coefficients, where these are rounding, at which its sign is known.
+const NOISE: f64 = 5.0;
 /// Panels after which the origin of time moves.
 const MOST_PANELS: usize = 12;
 
@@ -280,6 +282,9 @@ impl<'a> Contact<'a> {
             if self.would_lose_digits(&trial) && h > shortest {
                 h = (0.5 * h).max(shortest);
                 continue;
+            }
+            if trial.is_noise() {
+                return stopped(StopReason::DigitsExhausted);
             }
             // rounding does not tell how long a panel may be, and is less on a longer one
             let growth = if trial.is_rounding { 2.0 } else { 0.95 * trial.unresolved.max(1e-30).powf(order) };
@@ -627,6 +632,12 @@ fn largest_of(values: &[f64]) -> f64 {
 }
 
 impl Trial {
+    /// Whether what may be rounding is as large as the force, of which no digit is known then, nor its sign.
+    fn is_noise(&self) -> bool {
+        self.is_rounding
+            && NOISE * largest_of(&self.f_series[self.f_series.len() - 2..]) > largest_of(&self.nodal.force)
+    }
+
     /// Compression and its rate at the end.
     fn end(&self) -> (f64, f64) {
         let p = self.nodal.force.len();
