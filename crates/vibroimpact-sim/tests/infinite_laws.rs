@@ -340,6 +340,25 @@ fn no_rebound_follows_from_a_force_below_its_rounding() {
     }
 }
 
+/// A soft body that yields after a 1e-13th of its elastic natural time goes on by its plastic law; it was taken for a fault of the
+/// law that the line beyond yield is tensile before it.
+#[test]
+fn a_body_that_yields_at_once_goes_on_by_its_plastic_law() {
+    let law = Thornton::new(1.411e5, 0.01978, 1.941).unwrap();
+    for speed_m_s in [1.0, 1e2, 1.8e4, 1e5] {
+        let (receptance, striker) = (power(0.753), Striker { mass_kg: 1.0, speed_m_s });
+        let solution = solve_law(&receptance, &striker, &law, &Settings::default()).unwrap();
+        assert_eq!(solution.outcome, Outcome::Stopped(StopReason::ContactLasts), "{speed_m_s:e}");
+        assert!(solution.panels_tried < 100, "{speed_m_s:e}: {}", solution.panels_tried);
+        let scale = receptance.scale(&striker).unwrap();
+        let state = solution.at(0.9 * solution.known_until).unwrap();
+        let line = PI * law.yield_pressure_pa * law.effective_radius_m;
+        let xi = scale.displacement_m * state.compression - law.yield_compression_m();
+        let expected = law.yield_force_n() + line * xi;
+        assert!((scale.force_n * state.force / expected - 1.0).abs() < 1e-9, "{speed_m_s:e}: {state:?}");
+    }
+}
+
 /// Two beams, or terms of any powers, act together: a structure whose terms are divided into parts has the same impact, and the
 /// unit of time is that at which the structure has moved as far as the striker.
 #[test]

@@ -1,15 +1,19 @@
 //! How long a contact lasts by its law.
 
 use super::kernel::Kernel;
-use super::law::Scaled;
+use super::law::{Margin, Scaled};
 use contact_models::Branch;
+
+/// Part of the natural time within which the end of the first branch sets the length of panels.
+const SOON: f64 = 1e-9;
 
 /// Times that characterise a contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NaturalTimes {
     /// In which the law without its damping, pressed at the closing speed, would take half of that speed from the striker.
     pub contact: f64,
-    /// The same with its damping, except for what a plate gives way at once.
+    /// The same with its damping, except for what a plate gives way at once; or the time in which the branch would end, if
+    /// that is so soon that no panel of these lengths could find it.
     pub onset: f64,
     /// In which its damping relaxes.
     pub relaxation: f64,
@@ -26,11 +30,18 @@ impl NaturalTimes {
             by_spring(h) + damper * (h + kernel.value(h) - instant) / (0.5 * closing)
         };
         let contact = first_one(2.0_f64.powi(100), by_spring);
+        // in which this compression would reach a boundary of the branch
+        let end = |margin: Margin| {
+            let (before, fall) = (margin.at(level, 0.0), -margin.per_compression * closing);
+            let is_met = fall > 0.0 && margin.per_rate == 0.0 && before > 4e-15 * margin.size(level, 0.0);
+            if is_met && before / fall < SOON * contact { before / fall } else { contact }
+        };
+        let end = law.margins(branch).into_iter().map(end).fold(contact, f64::min);
         let there = force(contact, closing);
         let relaxation = there.damping / there.stiffness;
         NaturalTimes {
             contact,
-            onset: first_one(contact, by_both).min(contact),
+            onset: first_one(contact, by_both).min(end),
             relaxation: if relaxation.is_finite() { relaxation.abs() } else { 0.0 },
         }
     }
