@@ -68,6 +68,7 @@ impl Form {
         }
     }
 
+    /// The losses that depend on the motion at the start.
     #[inline(always)]
     pub fn of_state(&self) -> OfState {
         let mut q0 = [0.0; Q];
@@ -185,8 +186,8 @@ pub(crate) fn all_by_parts(modes: &[BodyMode], h: f64) -> bool {
     modes.iter().all(by_parts)
 }
 
-/// Losses of [`LANES`] modes for which [`all_by_parts`] holds. The rate to a Legendre force is a multiple of `e^{z x}`, and the polynomial
-/// `sum_k gamma_k P_n^(k)`, in which only the `gamma_k` depend on the mode.
+/// Losses of [`LANES`] modes for which [`all_by_parts`] holds. The rate under a Legendre force is the sum of a multiple of `e^{z x}` and
+/// of the polynomial `sum_k gamma_k P_n^(k)`, in which only the `gamma_k` depend on the mode.
 pub(crate) struct ByParts {
     /// As in [`Form`].
     bb: Lanes,
@@ -194,14 +195,14 @@ pub(crate) struct ByParts {
     /// Lower half of `qq` without the products of two polynomials.
     pub vibrating: [[Lanes; Q]; Q],
     gamma: [Lanes; Q],
-    /// From a mean over the panel of products of two rates to forces to the loss.
+    /// Loss for a unit mean, over the panel, of the product of the rates under two forces.
     loss: Lanes,
 }
 
 /// `[k][j]`: the sums over modes that multiply `int P_n^(k) P_m^(j)`.
 pub(crate) type Polynomials<T> = [[T; Q]; Q];
 
-/// Adds to the lower half of `qq` what these sums, of which only the lower half is used, multiply.
+/// Adds the integrals, multiplied by these sums, to the lower half of `qq`. Of the sums, too, only the lower half is used.
 pub(crate) fn add_polynomials(qq: &mut Matrix, sums: &Polynomials<f64>) {
     let (derivatives, weights) = (&BASIS.derivatives, &BASIS.weights);
     vectorized(
@@ -236,25 +237,21 @@ pub(crate) fn add_polynomials(qq: &mut Matrix, sums: &Polynomials<f64>) {
 impl ByParts {
     #[inline(always)]
     pub fn new(modes: &[BodyMode; LANES], h: f64) -> ByParts {
-        let (mut sigma, mut omega_d, mut decayed) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
-        let (mut z, mut inverse, mut whole) = (ComplexLanes::ZERO, ComplexLanes::ZERO, ComplexLanes::ZERO);
+        // the rate after a unit rate is Re(scale e^{z x})
+        let mut scale = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
+        let [mut sigma, mut turn, mut decayed] = [Lanes::ZERO; 3];
+        let [mut inverse, mut whole] = [ComplexLanes::ZERO; 2];
         for (l, mode) in modes.iter().enumerate() {
             let BodyMode { omega_rad_s, damping_ratio } = *mode;
             sigma.0[l] = damping_ratio * omega_rad_s;
-            omega_d.0[l] = omega_rad_s * ((1.0 - damping_ratio) * (1.0 + damping_ratio)).sqrt();
+            let omega_d = omega_rad_s * ((1.0 - damping_ratio) * (1.0 + damping_ratio)).sqrt();
+            scale.im.0[l] = sigma.0[l] / omega_d;
+            turn.0[l] = 1.0 / (omega_d * h);
             let decay = 2.0 * sigma.0[l] * h;
             decayed.0[l] = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
-            let of_mode = Complex64::new(-sigma.0[l], omega_d.0[l]) * h;
-            z.set_lane(l, of_mode);
-            inverse.set_lane(l, of_mode.inv());
-            whole.set_lane(l, of_mode.exp());
-        }
-        // the rate after a unit rate is Re(c e^{z x}) with this c
-        let mut scale = ComplexLanes { re: Lanes([1.0; LANES]), im: Lanes::ZERO };
-        let mut turn = Lanes::ZERO;
-        for l in 0..LANES {
-            scale.im.0[l] = sigma.0[l] / omega_d.0[l];
-            turn.0[l] = 1.0 / (omega_d.0[l] * h);
+            let z = Complex64::new(-sigma.0[l], omega_d) * h;
+            inverse.set_lane(l, z.inv());
+            whole.set_lane(l, z.exp());
         }
 
         // the rate to P_n is Re(scale (e^{z x} Q_n(0) - Q_n(x))) h with Q_n = sum_k P_n^(k)/z^(k+1), where scale/z = -i/(omega_d h);
