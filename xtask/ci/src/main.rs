@@ -8,6 +8,8 @@ use std::time::Instant;
 #[cfg(test)]
 mod circles;
 #[cfg(test)]
+mod features;
+#[cfg(test)]
 mod lock_files;
 #[cfg(test)]
 mod packed_files;
@@ -26,16 +28,19 @@ struct Step {
 }
 
 /// Every step except the first two builds all features of the workspace except `mpi`, which needs an MPI library. The second
-/// step builds only the libraries, without sweeps, pictures and the program.
+/// step checks only the libraries, without sweeps, pictures and the program.
 const STEPS: [Step; 7] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
-        // in an empty target folder, checking the other dependencies of the workspace takes longer than this whole step
+        // beside third parties that give it the features of the other steps, which use what is compiled here; the job `alone` of
+        // ci.yml checks it with its own features
         name: "lints of the libraries",
         arguments: &[
             "clippy",
             "--package",
             "vibroimpact",
+            "--package",
+            "third-parties",
             "--lib",
             "--no-default-features",
             "--locked",
@@ -84,6 +89,8 @@ const STEPS: [Step; 7] = [
             "work-precision",
             "--exclude",
             "book-snippets",
+            "--exclude",
+            "third-parties",
             "--no-verify",
             "--allow-dirty",
             "--locked",

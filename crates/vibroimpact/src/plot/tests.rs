@@ -242,7 +242,7 @@ fn a_png_has_the_size_asked_for_and_shows_lines_and_text() {
     assert!(pixels.contains(&[255, 255, 255, 255]) && pixels.contains(&[213, 94, 0, 255]));
     // the title is ink where the figure with another title, as high and as wide, has less
     let ink = |title: &str| {
-        let (width, _, pixels) = decoded(&figure(title).png(1.5).unwrap());
+        let (width, _, pixels) = decoded(&figure(title).width(200.0).png(1.5).unwrap());
         pixels[..36 * width as usize].iter().filter(|p| p[0] < 128).count()
     };
     for glyph in ["A", "Σ", "µ", "⁻¹", "é", "−", "×", "±", "²", "√", "δ"] {
