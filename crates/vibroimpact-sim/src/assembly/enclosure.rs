@@ -16,8 +16,8 @@ use crate::panel::legendre::TAYLOR;
 use crate::panel::vector::{change_each, sum_over, vectorized};
 use std::ops::Range;
 
-/// A contact force, its rate, and the modes on which it acts.
-pub(crate) struct Pull<'a> {
+/// A contact force at the start of a panel, its rate, and the modes on which it acts.
+pub(crate) struct ContactForce<'a> {
     pub link: &'a Link,
     pub force_n: f64,
     pub rate_n_s: f64,
@@ -25,20 +25,20 @@ pub(crate) struct Pull<'a> {
 
 /// Quasi-static displacement of the modes of a body under linearly growing contact forces, and its rate; reused memory.
 #[derive(Default)]
-pub(crate) struct Held {
+pub(crate) struct QuasiStatic {
     at: Vec<f64>,
     rate: Vec<f64>,
 }
 
-impl Held {
+impl QuasiStatic {
     /// For the modes of a body from the `from`-th on, whose `1/omega` are given.
-    fn hold(&mut self, body: &Range<usize>, from: usize, inverse: &[f64], pulls: &[Pull]) {
+    fn follow(&mut self, body: &Range<usize>, from: usize, inverse: &[f64], forces: &[ContactForce]) {
         for row in [&mut self.at, &mut self.rate] {
             row.clear();
             row.resize(inverse.len(), 0.0);
         }
-        for pull in pulls {
-            let Some(partner) = pull.link.span(body) else { continue };
+        for force in forces {
+            let Some(partner) = force.link.span(body) else { continue };
             vectorized(
                 #[inline(always)]
                 || {
@@ -47,8 +47,8 @@ impl Held {
                         [&partner.psi[from..], inverse],
                         #[inline(always)]
                         |[at, rate], [psi, inverse]| {
-                            let yields = psi * inverse * inverse;
-                            [at - yields * pull.force_n, rate - yields * pull.rate_n_s]
+                            let compliance = psi * inverse * inverse;
+                            [at - compliance * force.force_n, rate - compliance * force.rate_n_s]
                         },
                     );
                 },
@@ -58,7 +58,7 @@ impl Held {
 }
 
 /// Bounds on the difference of the overlap of a contact, and its first two derivatives along a panel of `h`, from the polynomial
-/// through start and nodes. `pulls` are the contact forces at its start.
+/// through start and nodes. `forces` are the contact forces at its start.
 pub(crate) fn of_panel(
     system: &System,
     missed: &Missed,
@@ -66,7 +66,7 @@ pub(crate) fn of_panel(
     contact: usize,
     h: f64,
     (amplitude, rate): (&[f64], &[f64]),
-    (pulls, held): (&[Pull], &mut Held),
+    (forces, quasi_static): (&[ContactForce], &mut QuasiStatic),
 ) -> [f64; ORDERS] {
     let mut rho = [0.0; ORDERS];
     for span in &system.links[contact].spans {
@@ -81,13 +81,15 @@ pub(crate) fn of_panel(
         let [inverse, a, b] = [&system.inverse, amplitude, rate].map(|row| &row[modes.clone()]);
         let psi = &span.psi[from..];
         // the displacement under a single force needs no memory
-        let alone = match pulls {
-            [pull] if system.most_damping <= OVERDAMPED => pull.link.span(&span.modes).map(|partner| (pull, partner)),
+        let alone = match forces {
+            [force] if system.most_damping <= OVERDAMPED => {
+                force.link.span(&span.modes).map(|partner| (force, partner))
+            }
             _ => None,
         };
-        let by_span = if let Some((pull, partner)) = alone {
+        let by_span = if let Some((force, partner)) = alone {
             let rows = [psi, a, b, &partner.psi[from..], inverse, values, slopes, bends];
-            let (force, growth) = (pull.force_n, pull.rate_n_s);
+            let (force, growth) = (force.force_n, force.rate_n_s);
             vectorized(
                 #[inline(always)]
                 || {
@@ -95,16 +97,16 @@ pub(crate) fn of_panel(
                         rows,
                         #[inline(always)]
                         |[psi, a, b, partner, inverse, value, slope, bend]| {
-                            let yields = partner * inverse * inverse;
-                            let vibrates = [a + yields * force, b + yields * growth];
+                            let compliance = partner * inverse * inverse;
+                            let vibrates = [a + compliance * force, b + compliance * growth];
                             missed_by(psi, vibrates, inverse, [value, slope, bend])
                         },
                     )
                 },
             )
         } else {
-            held.hold(&span.modes, from, inverse, pulls);
-            let rows = [psi, a, b, &held.at, &held.rate, inverse, values, slopes, bends];
+            quasi_static.follow(&span.modes, from, inverse, forces);
+            let rows = [psi, a, b, &quasi_static.at, &quasi_static.rate, inverse, values, slopes, bends];
             vectorized(
                 #[inline(always)]
                 || {
@@ -128,7 +130,7 @@ pub(crate) fn of_panel(
             let fast = zeta * omega + split;
             let slow = square / fast;
             for (root, other) in [(fast, slow), (slow, fast)] {
-                let decaying = b[i] + other * a[i] - square * (held.at[i] - held.rate[i] / root) / root;
+                let decaying = b[i] + other * a[i] - square * (quasi_static.at[i] - quasi_static.rate[i] / root) / root;
                 add(&mut rho, psi[i].abs() * decaying.abs() / (2.0 * split), root * h);
             }
         }

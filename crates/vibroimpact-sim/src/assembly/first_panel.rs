@@ -4,7 +4,7 @@
 //! truncation of a force that begins as `t^(3/2)` is a known function of `J` (derived in `docs/theory/modal.md`, "How a force begins and
 //! ends").
 
-use super::enclosure::{Held, of_panel};
+use super::enclosure::{QuasiStatic, of_panel};
 use super::motion::March;
 use super::terminal::{Series, series_of, value};
 use crate::panel::dyadic::{J_MAX, J_MIN};
@@ -17,7 +17,7 @@ pub(super) const SINGULAR: f64 = 2.5e-4;
 const WEIGHTED: f64 = 4e-6;
 
 /// A first panel beyond the reach of the series may have this share of the `J` that accuracy allows, which makes it four times shorter.
-const EXTRAPOLATED: f64 = 1.0 / 32.0;
+const BEYOND_REACH: f64 = 1.0 / 32.0;
 /// On such a panel the polynomial may miss this share of the speed of approach. If it missed more, it could not be told whether the
 /// surfaces part at once.
 const UNCERTAIN: f64 = 0.5;
@@ -60,10 +60,10 @@ impl Forecast<'_, '_> {
 
     /// Whether the polynomial through the nodes follows the vibrations of the modes on a panel: what it misses changes the impulse by no
     /// more than `allowed` (N s), and leaves certain that the surfaces approach.
-    fn follows_vibrations(&self, level: i32, allowed: f64, held: &mut Held) -> bool {
+    fn follows_vibrations(&self, level: i32, allowed: f64, quasi_static: &mut QuasiStatic) -> bool {
         let (march, c, h) = (self.march, self.contact, self.step_s(level));
         let (missed, motion) = (march.tables.missed(march.system, level), (&*march.amplitude, &*march.rate));
-        let [missed, slope, _] = of_panel(march.system, missed, &march.loads, c, h, motion, (&[], held));
+        let [missed, slope, _] = of_panel(march.system, missed, &march.loads, c, h, motion, (&[], quasi_static));
         let (compression, rate) = self.end(level);
         let error = self.force((compression + missed, rate + slope / h)) - self.force((compression, rate));
         slope <= UNCERTAIN * march.states[c].rate * h && error * h <= allowed
@@ -90,9 +90,10 @@ impl<'a> March<'a> {
         }
         // beyond the reach of the fastest modes the compression is extrapolated; they hardly matter to a force that is represented as it
         // begins, unless they vibrate
-        let mut held = Held::default();
+        let mut quasi_static = QuasiStatic::default();
         let longer = |j: &i32| {
-            forecast.impulse(*j) <= EXTRAPOLATED * allowed && forecast.follows_vibrations(*j, tolerance, &mut held)
+            forecast.impulse(*j) <= BEYOND_REACH * allowed
+                && forecast.follows_vibrations(*j, tolerance, &mut quasi_static)
         };
         (J_MIN..level).rev().take_while(longer).last().unwrap_or(level)
     }

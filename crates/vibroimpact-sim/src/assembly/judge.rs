@@ -1,10 +1,10 @@
 //! Checks a solved panel: does an event function of one of its contacts fall to zero, and is the panel short enough for this
 //! decision?
 
-use super::enclosure::{Pull, of_panel};
+use super::enclosure::{ContactForce, of_panel};
 use super::event::{Beginning, EventFunction, Verdict};
 use super::interpolation::ORDERS;
-use super::motion::{March, Target};
+use super::motion::{Crossing, March};
 use super::rounding::MAGNIFIED;
 use super::state::Touch;
 use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR, slopes};
@@ -23,7 +23,7 @@ const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 pub(super) enum Judgement {
     Clear,
     Doubtful,
-    Meets(Target, f64),
+    Meets(Crossing, f64),
 }
 
 /// What is not known of an overlap on a panel, and therefore not of its event functions.
@@ -71,14 +71,14 @@ impl<'a> March<'a> {
         moved: &[Nodal],
         enclosed: bool,
     ) -> Judgement {
-        let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
-        let mut pulls = std::mem::take(&mut self.pulls);
-        pulls.clear();
+        let (mut first, mut doubtful): (Option<(Crossing, f64)>, bool) = (None, false);
+        let mut forces = std::mem::take(&mut self.contact_forces);
+        forces.clear();
         if enclosed {
-            pulls.extend(self.pulls_of(&contacts[..closed]));
+            forces.extend(self.forces_of(&contacts[..closed]));
         }
         for (i, &c) in contacts.iter().enumerate() {
-            let rho = if enclosed { self.enclosure(c, h, &pulls) } else { [0.0; ORDERS] };
+            let rho = if enclosed { self.enclosure(c, h, &forces) } else { [0.0; ORDERS] };
             let beyond = h * h * self.moved_by(c, &contacts[..closed], |i| force[i].0[Q - 1].abs());
             let uncertainty = self.uncertainty(c, h, rho, beyond);
             let state = &self.states[c];
@@ -100,7 +100,7 @@ impl<'a> March<'a> {
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {
                         if first.is_none_or(|(_, earlier)| place < earlier) {
-                            first = Some((Target { contact: c, boundary }, place));
+                            first = Some((Crossing { contact: c, boundary }, place));
                         }
                     }
                 }
@@ -121,19 +121,19 @@ impl<'a> March<'a> {
                 }
             }
         }
-        self.pulls = pulls;
+        self.contact_forces = forces;
         match first {
-            Some((target, place)) => Judgement::Meets(target, place),
+            Some((crossing, place)) => Judgement::Meets(crossing, place),
             None if doubtful => Judgement::Doubtful,
             None => Judgement::Clear,
         }
     }
 
     /// Bounds on what the polynomial of an overlap on a panel of `2^-j` s misses of the vibrations of the modes.
-    fn enclosure(&mut self, c: usize, h: f64, pulls: &[Pull]) -> [f64; ORDERS] {
+    fn enclosure(&mut self, c: usize, h: f64, forces: &[ContactForce]) -> [f64; ORDERS] {
         let missed = self.tables.missed(self.system, self.tables.steps.level_within(h));
         let motion = (self.amplitude.as_slice(), self.rate.as_slice());
-        of_panel(self.system, missed, &self.loads, c, h, motion, (pulls, &mut self.held))
+        of_panel(self.system, missed, &self.loads, c, h, motion, (forces, &mut self.quasi_static))
     }
 
     fn uncertainty(&self, c: usize, h: f64, rho: [f64; ORDERS], beyond: f64) -> Uncertainty {
@@ -144,9 +144,9 @@ impl<'a> March<'a> {
     }
 
     /// Value of an event function at the end of a terminal panel, and its rate.
-    pub(super) fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
-        let state = &self.states[target.contact];
-        match state.boundaries.get(target.boundary).filter(|_| state.is_closed()) {
+    pub(super) fn margin(&self, crossing: Crossing, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
+        let state = &self.states[crossing.contact];
+        match state.boundaries.get(crossing.boundary).filter(|_| state.is_closed()) {
             Some(boundary) => {
                 let slope = boundary.per_compression * rate + boundary.per_rate * acceleration;
                 (boundary.margin(overlap, rate), slope)
@@ -163,13 +163,13 @@ impl<'a> March<'a> {
         let of =
             |(k, psi): &(usize, f64)| psi * (system.drag[*k] * self.rate[*k] + system.square[*k] * self.amplitude[*k]);
         let free = 2.0 * series[2] - link.elastic.iter().map(of).sum::<f64>();
-        let pull = |&other: &usize| {
+        let by = |&other: &usize| {
             let (state, links) = (&self.states[other], &self.system.links);
             let weight: f64 = links[c].shared(&links[other]).map(|(_, weight)| weight).sum();
             let force = |touch: &Touch| self.law(other).force(&touch.branch, state.overlap, state.rate).force_n;
             weight * state.touch().map_or(0.0, force)
         };
-        free - closed.iter().map(pull).sum::<f64>()
+        free - closed.iter().map(by).sum::<f64>()
     }
 
     /// Uncertainty of the acceleration of the overlap of a contact by the truncation of the closed contacts' forces (m/s^2).
@@ -187,13 +187,13 @@ impl<'a> March<'a> {
     }
 
     /// The forces of closed contacts at the start of a panel.
-    fn pulls_of<'s>(&'s self, closed: &'s [usize]) -> impl Iterator<Item = Pull<'a>> + 's {
-        let pull = |c: &usize| {
+    fn forces_of<'s>(&'s self, closed: &'s [usize]) -> impl Iterator<Item = ContactForce<'a>> + 's {
+        let of = |c: &usize| {
             let (force, h) = self.states[*c].touch()?.previous?;
             let ([_, force_n], [_, slope]) = (force.at_ends(), force.slopes_at_ends());
-            Some(Pull { link: &self.system.links[*c], force_n, rate_n_s: slope / h })
+            Some(ContactForce { link: &self.system.links[*c], force_n, rate_n_s: slope / h })
         };
-        closed.iter().filter_map(pull)
+        closed.iter().filter_map(of)
     }
 }
 

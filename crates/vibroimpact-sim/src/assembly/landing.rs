@@ -4,16 +4,16 @@
 use super::collocate::{Collocated, Unknown};
 use super::first_panel::SINGULAR;
 use super::judge::Judgement;
-use super::motion::{ExpectedEvent, March, Target};
-use super::terminal::{Landed, Window};
+use super::motion::{Crossing, ExpectedEvent, March};
+use super::terminal::{Solved, TerminalPanel};
 use super::trial::{NEWTON_SHARE, Trial};
 use crate::panel::ends::Ends;
 use crate::panel::legendre::{BASIS, Legendre, Q};
 
 /// The error of a terminal panel grows with this power of its length at least, in general and where a force ends as
 /// `(t - end)^(3/2)` and is represented so.
-const LANDING: f64 = 2.5;
-const LANDING_WEIGHTED: f64 = 5.0;
+const ORDER: f64 = 2.5;
+const ORDER_WEIGHTED: f64 = 5.0;
 /// An event function has fallen to zero where it is smaller than this part of its largest value.
 const MET: f64 = 1e-3;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
@@ -21,7 +21,7 @@ const EXTRAPOLATED: f64 = 0.05;
 
 /// Length of a terminal panel with the allowed error, if the error with this length is too large by this factor.
 fn shorter(length: f64, excess: f64, ends: Ends) -> f64 {
-    let power = if ends.ends { LANDING_WEIGHTED } else { LANDING };
+    let power = if ends.at_end { ORDER_WEIGHTED } else { ORDER };
     0.9 * length * excess.powf(-1.0 / power).max(1e-3)
 }
 
@@ -64,16 +64,16 @@ impl Bracket {
 impl<'a> March<'a> {
     /// Advances to the next break of the loads or the end, `length` away.
     pub(super) fn advance_to_stop(&mut self, length: f64) {
-        let mut window = self.window(None, length);
-        let mut unknowns = self.unknowns_of(&window, length, |c| self.begins(c));
-        let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
+        let mut panel = self.terminal_panel(None, length);
+        let mut unknowns = self.unknowns_of(&panel, length, |c| self.begins(c));
+        let Some(mut solved) = panel.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
             return self.refine_within(length);
         };
-        self.watch_window(&mut window, &mut landed);
-        match self.judge_landed(&window, &landed) {
-            Judgement::Meets(target, place) => self.expect(target, place, length),
-            _ if self.excess(&window, &landed) > 1.0 => self.refine_within(length),
-            _ => self.commit_landed(&window, &landed),
+        self.watch_panel(&mut panel, &mut solved);
+        match self.judge_solved(&panel, &solved) {
+            Judgement::Meets(crossing, place) => self.expect(crossing, place, length),
+            _ if self.excess(&panel, &solved) > 1.0 => self.refine_within(length),
+            _ => self.commit_solved(&panel, &solved),
         }
     }
 
@@ -87,8 +87,8 @@ impl<'a> March<'a> {
                 return None;
             }
             let boundary = state.vanishes.iter().position(|vanishes| *vanishes)?;
-            let target = Target { contact, boundary };
-            if !self.ends_at(target).ends {
+            let crossing = Crossing { contact, boundary };
+            if !self.ends_at(crossing).at_end {
                 return None;
             }
             let end = &state.boundaries[boundary];
@@ -101,20 +101,20 @@ impl<'a> March<'a> {
                 None => (0.0, end.margin(state.overlap, 0.0)),
             };
             let place = from + (places[after] - from) * before / (before - margins[after]);
-            Some(ExpectedEvent { target, at_s: self.time_s + place * h })
+            Some(ExpectedEvent { crossing, at_s: self.time_s + place * h })
         };
         trial.contacts[..trial.closed].iter().enumerate().find_map(of)
     }
 
     /// Longest terminal panel that accuracy allows before an event of the compression that is expected after `left`, from the law
     /// along a parabola to the event.
-    pub(super) fn accurate_length(&mut self, target: Target, left: f64) -> f64 {
-        let state = &self.states[target.contact];
+    pub(super) fn accurate_length(&mut self, crossing: Crossing, left: f64) -> f64 {
+        let state = &self.states[crossing.contact];
         let Some((touch, (force, _))) = state.touch().and_then(|touch| Some((touch, touch.previous?))) else {
             return f64::INFINITY;
         };
-        let (law, tolerance) = (self.law(target.contact), self.impulse_tolerance(target.contact));
-        let Some(boundary) = state.boundaries.get(target.boundary) else { return f64::INFINITY };
+        let (law, tolerance) = (self.law(crossing.contact), self.impulse_tolerance(crossing.contact));
+        let Some(boundary) = state.boundaries.get(crossing.boundary) else { return f64::INFINITY };
         if boundary.per_rate != 0.0 || SINGULAR * force.at(1.0) * left <= 0.1 * tolerance {
             return f64::INFINITY;
         }
@@ -125,26 +125,26 @@ impl<'a> March<'a> {
             law.force(&touch.branch, compression, moved / left).force_n
         });
         self.counts.law_evaluations += Q as u64;
-        let ends = self.ends_at(target);
+        let ends = self.ends_at(crossing);
         let excess = ends.truncation(&ends.quotient(&force)) * left / tolerance;
         if excess > 1.0 { shorter(left, excess, ends) } else { f64::INFINITY }
     }
 
     /// Advances to the event, which is expected after `expected` seconds and at most `longest` away.
-    pub(super) fn advance_to_event(&mut self, target: Target, expected: f64, longest: f64) {
-        let mut window = self.window(Some(target.contact), (1.0 + EXTRAPOLATED) * longest);
-        let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
+    pub(super) fn advance_to_event(&mut self, crossing: Crossing, expected: f64, longest: f64) {
+        let mut panel = self.terminal_panel(Some(crossing.contact), (1.0 + EXTRAPOLATED) * longest);
+        let Some(at) = panel.contacts.iter().position(|c| *c == crossing.contact) else {
             return self.refine(self.level + 1);
         };
-        let Some(mut landed) = self.panel_to_event(&window, target, at, expected, longest) else {
+        let Some(mut solved) = self.panel_to_event(&panel, crossing, at, expected, longest) else {
             // the event is further away than expected: continue until a panel meets it again
             return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
-        self.watch_window(&mut window, &mut landed);
-        let length = landed.length;
+        self.watch_panel(&mut panel, &mut solved);
+        let length = solved.length;
         // this panel may have passed over an earlier zero of the same event function, or over another event
-        match self.judge_landed(&window, &landed) {
-            Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
+        match self.judge_solved(&panel, &solved) {
+            Judgement::Meets(other, place) if place < 0.99 && (other != crossing || place > 0.0) => {
                 self.expect(other, place, length);
                 // a closer guess avoids finding the same end again
                 self.level += 1;
@@ -152,44 +152,44 @@ impl<'a> March<'a> {
             }
             _ => {}
         }
-        let excess = self.excess(&window, &landed);
+        let excess = self.excess(&panel, &solved);
         if excess > 1.0 {
-            self.longest_terminal = shorter(length, excess, self.ends_at(target));
-            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + length });
+            self.longest_terminal = shorter(length, excess, self.ends_at(crossing));
+            self.expected = Some(ExpectedEvent { crossing, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }
-        self.commit_landed(&window, &landed);
-        self.transition(target);
+        self.commit_solved(&panel, &solved);
+        self.transition(crossing);
     }
 
     /// The terminal panel of at most `longest` whose end is the event.
     fn panel_to_event(
         &mut self,
-        window: &Window,
-        target: Target,
+        panel: &TerminalPanel,
+        crossing: Crossing,
         at: usize,
         expected: f64,
         longest: f64,
-    ) -> Option<Landed> {
-        let state = &self.states[target.contact];
-        let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
+    ) -> Option<Solved> {
+        let state = &self.states[crossing.contact];
+        let initial = self.margin(crossing, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
         // other forces are truncated or extrapolated, as polynomials
-        let ends = self.ends_at(target);
-        let of = |c: usize| if c == target.contact { ends } else { Ends::SMOOTH };
-        let mut unknowns = self.unknowns_of(window, length, of);
+        let ends = self.ends_at(crossing);
+        let of = |c: usize| if c == crossing.contact { ends } else { Ends::SMOOTH };
+        let mut unknowns = self.unknowns_of(panel, length, of);
         let (mut bracket, mut largest) = (Bracket::from_start(initial), initial);
         for _ in 0..60 {
-            let landed = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts)?;
-            for (unknown, solved) in unknowns.iter_mut().zip(&landed.solved) {
-                unknown.guess = solved.force;
+            let solved = panel.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts)?;
+            for (unknown, own) in unknowns.iter_mut().zip(&solved.collocated) {
+                unknown.guess = own.force;
             }
-            if let Some(landed) = self.adjusted(window, target, at, &landed) {
-                return (landed.length <= longest).then_some(landed);
+            if let Some(solved) = self.adjusted(panel, crossing, at, &solved) {
+                return (solved.length <= longest).then_some(solved);
             }
-            let (margin, slope) = self.margin(target, landed.end[at]);
+            let (margin, slope) = self.margin(crossing, solved.end[at]);
             if margin.abs() <= 1e-13 * initial {
-                return Some(landed);
+                return Some(solved);
             }
             largest = largest.max(margin.abs());
             bracket.add(length, margin);
@@ -202,11 +202,11 @@ impl<'a> March<'a> {
                     if near { newton } else { 2.0 * length }.min(longest)
                 }
                 // while forces are stretched with the panel, the rate at its end is not the slope of the event function
-                Some((high, _)) => match bracket.next(newton, ends.ends) {
+                Some((high, _)) => match bracket.next(newton, ends.at_end) {
                     // the motion after the event does not depend on these last digits of the time
                     Some(next) if (next - length).abs() > 1e-13 * high => next,
                     // a function that jumps over zero depends on where Newton's method ends: the panel is too long
-                    _ => return (margin.abs() <= MET * largest).then_some(landed),
+                    _ => return (margin.abs() <= MET * largest).then_some(solved),
                 },
             };
         }
@@ -215,16 +215,16 @@ impl<'a> March<'a> {
 
     /// The forces of a terminal panel, truncated, extrapolated or stretched to the point where the motion under them meets the event,
     /// if that point is so close that the laws hold there as they do at the nodes.
-    fn adjusted(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
+    fn adjusted(&self, panel: &TerminalPanel, crossing: Crossing, at: usize, from: &Solved) -> Option<Solved> {
         let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + EXTRAPOLATED) * from.length;
         let (mut length, mut end) = (from.length, from.end[at]);
         // a force that is stretched by a part changes by that part
-        let stretched = from.solved.get(at).filter(|solved| solved.ends.ends);
-        let stretched = stretched.map(|solved| solved.force.iter().fold(0.0f64, |most, force| most.max(force.abs())));
-        let defect = NEWTON_SHARE * self.impulse_tolerance(target.contact);
+        let stretched = from.collocated.get(at).filter(|own| own.ends.at_end);
+        let stretched = stretched.map(|own| own.force.iter().fold(0.0f64, |most, force| most.max(force.abs())));
+        let defect = NEWTON_SHARE * self.impulse_tolerance(crossing.contact);
         let near = if stretched.is_some() { 1e-13 } else { 1e-7 };
         for _ in 0..8 {
-            let (margin, slope) = self.margin(target, end);
+            let (margin, slope) = self.margin(crossing, end);
             let next = length - margin / slope;
             if !range.contains(&next) {
                 return None;
@@ -234,94 +234,94 @@ impl<'a> March<'a> {
             }
             // the next of Newton's steps would be the square of this one, unless forces are stretched
             if (next - length).abs() <= near * next {
-                return Some(window.with_length(from, next));
+                return Some(panel.with_length(from, next));
             }
-            (length, end) = (next, window.end(from, at, next));
+            (length, end) = (next, panel.end(from, at, next));
         }
         None
     }
 
     /// Adds the open contacts that may close on a terminal panel that is solved.
-    fn watch_window(&mut self, window: &mut Window, landed: &mut Landed) {
-        let mut contacts = window.contacts.clone();
-        self.watch(landed.length, &mut contacts, window.closed, &landed.force);
-        for &c in &contacts[window.contacts.len()..] {
-            self.add(window, c);
+    fn watch_panel(&mut self, panel: &mut TerminalPanel, solved: &mut Solved) {
+        let mut contacts = panel.contacts.clone();
+        self.watch(solved.length, &mut contacts, panel.closed, &solved.force);
+        for &c in &contacts[panel.contacts.len()..] {
+            self.add(panel, c);
         }
-        window.look(landed);
+        panel.look(solved);
     }
 
     /// The closed contacts on a terminal panel, and the contact whose closing ends it, with series that hold up to `reach`.
-    fn window(&mut self, closing: Option<usize>, reach: f64) -> Window {
+    fn terminal_panel(&mut self, closing: Option<usize>, reach: f64) -> TerminalPanel {
         let mut contacts = Vec::new();
         self.closed(&mut contacts);
         let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        let mut window = Window::new(self.system, self.tables, &self.loads, (contacts, &overlaps, reach), moment);
+        let mut panel = TerminalPanel::new(self.system, self.tables, &self.loads, (contacts, &overlaps, reach), moment);
         if let Some(c) = closing.filter(|&c| !self.states[c].is_closed()) {
             (self.states[c].overlap, self.states[c].rate) = self.overlap_of_modes(c);
-            self.add(&mut window, c);
+            self.add(&mut panel, c);
         }
-        window
+        panel
     }
 
-    fn add(&mut self, window: &mut Window, c: usize) {
+    fn add(&mut self, panel: &mut TerminalPanel, c: usize) {
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        window.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
+        panel.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
     }
 
     /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried, with its rate where
     /// there is one.
-    fn unknowns_of(&self, window: &Window, length: f64, ends: impl Fn(usize) -> Ends) -> Vec<Unknown<'a>> {
-        let free = |i: usize| ([0.0; Q], self.states[window.contacts[i]].force_by_rate().then_some([0.0; Q]));
-        self.unknowns(&window.contacts[..window.closed], length, free, ends).collect()
+    fn unknowns_of(&self, panel: &TerminalPanel, length: f64, ends: impl Fn(usize) -> Ends) -> Vec<Unknown<'a>> {
+        let free = |i: usize| ([0.0; Q], self.states[panel.contacts[i]].force_by_rate().then_some([0.0; Q]));
+        self.unknowns(&panel.contacts[..panel.closed], length, free, ends).collect()
     }
 
     /// How the force of the contact of an event begins and ends on a terminal panel up to it. While other contacts are closed it is
     /// taken for smooth: to truncate or extrapolate all forces costs less than to solve for them once more.
-    pub(super) fn ends_at(&self, Target { contact, boundary }: Target) -> Ends {
+    pub(super) fn ends_at(&self, Crossing { contact, boundary }: Crossing) -> Ends {
         let state = &self.states[contact];
         let alone = || self.states.iter().filter(|state| state.is_closed()).count() == 1;
         let ends = state.is_closed() && state.vanishes.get(boundary) == Some(&true) && alone();
-        if ends { Ends { ends, ..self.begins(contact) } } else { Ends::SMOOTH }
+        if ends { Ends { at_end: true, ..self.begins(contact) } } else { Ends::SMOOTH }
     }
 
-    fn expect(&mut self, target: Target, place: f64, length: f64) {
+    fn expect(&mut self, crossing: Crossing, place: f64, length: f64) {
         self.counts.rejected_steps += 1;
         if place == 0.0 {
-            self.transition(target);
+            self.transition(crossing);
         } else {
-            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + place * length });
+            self.expected = Some(ExpectedEvent { crossing, at_s: self.time_s + place * length });
         }
     }
 
     /// Tests the event functions of a terminal panel, whose series need no enclosure.
-    fn judge_landed(&mut self, window: &Window, landed: &Landed) -> Judgement {
-        self.judge(landed.length, &window.contacts, window.closed, &landed.force, &landed.moved, false)
+    fn judge_solved(&mut self, panel: &TerminalPanel, solved: &Solved) -> Judgement {
+        self.judge(solved.length, &panel.contacts, panel.closed, &solved.force, &solved.moved, false)
     }
 
     /// Error of the forces of a terminal panel relative to the allowed error.
-    fn excess(&self, window: &Window, landed: &Landed) -> f64 {
-        let of = |(i, solved): (usize, &Collocated)| {
-            let (truncation, end) = (solved.ends.truncation(&solved.quotient(&landed.force[i])), landed.end[i]);
-            self.error(window.contacts[i], truncation, landed.length, (end[0], end[1]))
+    fn excess(&self, panel: &TerminalPanel, solved: &Solved) -> f64 {
+        let of = |(i, own): (usize, &Collocated)| {
+            let (truncation, end) = (own.ends.truncation(&own.quotient(&solved.force[i])), solved.end[i]);
+            self.error(panel.contacts[i], truncation, solved.length, (end[0], end[1]))
         };
-        landed.solved.iter().enumerate().map(of).fold(0.0, f64::max)
+        solved.collocated.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 
-    fn commit_landed(&mut self, window: &Window, landed: &Landed) {
-        let (contacts, closed) = (window.contacts.as_slice(), window.closed);
-        self.show(landed.length, &contacts[..closed], &landed.force, &landed.solved);
+    fn commit_solved(&mut self, panel: &TerminalPanel, solved: &Solved) {
+        let (contacts, closed) = (panel.contacts.as_slice(), panel.closed);
+        self.show(solved.length, &contacts[..closed], &solved.force, &solved.collocated);
         if self.wants_contact_work() {
             for (i, &c) in contacts[..closed].iter().enumerate() {
-                let overlap = landed.moved[i].map(|moved| self.states[c].overlap + moved);
-                self.contact_work_j += self.states[c].work_j(&landed.force[i], &overlap, landed.end[i][0]);
+                let overlap = solved.moved[i].map(|moved| self.states[c].overlap + moved);
+                self.contact_work_j += self.states[c].work_j(&solved.force[i], &overlap, solved.end[i][0]);
             }
         }
-        window.advance(self.system, landed, &mut self.amplitude, &mut self.rate);
-        self.pass(landed.length);
-        self.accept(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
-            (landed.end[i][0], landed.end[i][1])
+        panel.advance(self.system, solved, &mut self.amplitude, &mut self.rate);
+        self.pass(solved.length);
+        self.accept(solved.length, contacts, closed, &solved.collocated, &solved.force, |i| {
+            (solved.end[i][0], solved.end[i][1])
         });
     }
 }

@@ -106,15 +106,15 @@ impl<'a> March<'a> {
     fn contact(&mut self, trial: &mut Trial<'a>) {
         let (steps, lasting) = (self.tables.steps, self.lasting());
         let (mut reach, mut level) = (self.terminal_reach(), self.level);
-        if let Some(ExpectedEvent { target, at_s }) = self.expected {
+        if let Some(ExpectedEvent { crossing, at_s }) = self.expected {
             let left = (at_s - self.time_s).max(0.0);
             if left <= reach && self.longest_terminal.is_infinite() {
-                self.longest_terminal = self.accurate_length(target, left);
+                self.longest_terminal = self.accurate_length(crossing, left);
                 reach = reach.min(self.longest_terminal);
             }
             if left <= reach {
                 self.expected = None;
-                return self.advance_to_event(target, left, reach.min(lasting));
+                return self.advance_to_event(crossing, left, reach.min(lasting));
             }
             let near = steps.level_within(SHARE * left);
             level = if near > level + SPARSE { near + (near & 1) } else { level.max(near) };
@@ -137,7 +137,7 @@ impl<'a> March<'a> {
             return 0.0;
         }
         // the error of a force limits the length of a panel, and where a polynomial follows it its derivatives can be less smooth
-        let ends_singular = self.expected.is_some_and(|expected| self.ends_at(expected.target).ends);
+        let ends_singular = self.expected.is_some_and(|expected| self.ends_at(expected.crossing).at_end);
         let reach = if ends_singular { self.reach } else { SHORT * self.reach };
         // a terminal panel is not better than a panel of similar length
         let similar = 2.0 * steps.step_s(self.level.clamp(J_MIN + 1, J_MAX));
@@ -153,12 +153,12 @@ impl<'a> March<'a> {
         }
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
         let judgement = self.judge(h, contacts, closed, &trial.force, &trial.moved, true);
-        if let Judgement::Meets(target, place) = judgement
+        if let Judgement::Meets(crossing, place) = judgement
             && place > 0.0
         {
             // the event is located once it is near
             self.counts.rejected_steps += 1;
-            self.expected = Some(ExpectedEvent { target, at_s: self.time_s + place * h });
+            self.expected = Some(ExpectedEvent { crossing, at_s: self.time_s + place * h });
             return;
         }
         if judgement == Judgement::Doubtful {
@@ -171,9 +171,9 @@ impl<'a> March<'a> {
             let finer = (error.log2() / 5.0) as i32;
             return self.refine(level + finer.clamp(1, 4));
         }
-        if let Judgement::Meets(target, _) = judgement {
+        if let Judgement::Meets(crossing, _) = judgement {
             self.counts.rejected_steps += 1;
-            return self.transition(target);
+            return self.transition(crossing);
         }
         self.commit(level, trial);
         if self.expected.is_none() {

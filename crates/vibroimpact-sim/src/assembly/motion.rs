@@ -2,7 +2,7 @@
 
 use super::collocate::Newton;
 use super::dense::{Event, Stretch};
-use super::enclosure::{Held, Pull};
+use super::enclosure::{ContactForce, QuasiStatic};
 use super::ledger::{Account, Moment, Sum};
 use super::load::Loads;
 use super::miss::Misses;
@@ -26,9 +26,9 @@ const FARTHER: f64 = 10.0;
 /// Share of the stated tolerance that is allowed for one panel.
 const STEP_SHARE: f64 = 0.25;
 
-/// An event function of a contact: a boundary of its branch, or its closing.
+/// The event of a contact that an event function stands for: it crosses a boundary of its branch, or it closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Target {
+pub(super) struct Crossing {
     pub contact: usize,
     pub boundary: usize,
 }
@@ -36,7 +36,7 @@ pub(super) struct Target {
 /// An event that is expected.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ExpectedEvent {
-    pub target: Target,
+    pub crossing: Crossing,
     pub at_s: f64,
 }
 
@@ -68,8 +68,8 @@ pub(crate) struct March<'a> {
     /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Memory for the enclosures, and for Newton's method.
-    pub(super) pulls: Vec<Pull<'a>>,
-    pub(super) held: Held,
+    pub(super) contact_forces: Vec<ContactForce<'a>>,
+    pub(super) quasi_static: QuasiStatic,
     pub(super) newton: Newton,
     /// Step exponent of the next trial panel.
     pub(super) level: i32,
@@ -144,8 +144,8 @@ impl<'a> March<'a> {
             pending: Vec::new(),
             misses: None,
             departure: (0.0, Vec::new(), Vec::new()),
-            pulls: Vec::new(),
-            held: Held::default(),
+            contact_forces: Vec::new(),
+            quasi_static: QuasiStatic::default(),
             newton: Newton::default(),
             level: J_MIN,
             expected: None,

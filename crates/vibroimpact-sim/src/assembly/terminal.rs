@@ -27,8 +27,8 @@ pub(crate) fn reach_s(fastest_rad_s: f64) -> f64 {
     if fastest_rad_s > 0.0 { reach / fastest_rad_s } else { f64::INFINITY }
 }
 
-/// The state of some contacts at the start of a terminal panel.
-pub(crate) struct Window {
+/// A terminal panel whose length is not known yet: the state of some contacts at its start.
+pub(crate) struct TerminalPanel {
     /// Closed contacts, then open ones that are watched.
     pub contacts: Vec<usize>,
     pub closed: usize,
@@ -47,19 +47,19 @@ struct Kernel {
 
 /// A solved terminal panel.
 #[derive(Debug)]
-pub(crate) struct Landed {
+pub(crate) struct Solved {
     pub length: f64,
     /// Of the closed contacts: values at the nodes, and the force.
-    pub solved: Vec<Collocated>,
+    pub collocated: Vec<Collocated>,
     pub force: Vec<Legendre>,
     moments: Vec<Series>,
-    /// Increase of the overlap of every contact of the window from the start to the nodes.
+    /// Increase of the overlap of every contact of the panel from the start to the nodes.
     pub moved: Vec<Nodal>,
     /// Overlap and its first two derivatives at the end.
     pub end: Vec<[f64; 3]>,
 }
 
-impl Window {
+impl TerminalPanel {
     /// `overlaps` are those of the closed contacts now; the panel will be no longer than `reach` (s).
     pub fn new(
         system: &System,
@@ -67,13 +67,13 @@ impl Window {
         loads: &Loads,
         (contacts, overlaps, reach): (Vec<usize>, &[f64], f64),
         moment: (f64, &[f64], &[f64]),
-    ) -> Window {
+    ) -> TerminalPanel {
         let closed = contacts.len();
-        let mut window = Window { contacts, closed, reach, free: Vec::new(), kernels: Vec::new() };
+        let mut panel = TerminalPanel { contacts, closed, reach, free: Vec::new(), kernels: Vec::new() };
         for (i, overlap) in overlaps.iter().enumerate() {
-            window.expand(system, tables, loads, (window.contacts[i], *overlap), moment);
+            panel.expand(system, tables, loads, (panel.contacts[i], *overlap), moment);
         }
-        window
+        panel
     }
 
     /// Adds an open contact with its overlap now.
@@ -107,15 +107,15 @@ impl Window {
     }
 
     /// Finds the overlaps of contacts that were added after the panel was solved.
-    pub fn look(&self, landed: &mut Landed) {
-        for c in landed.moved.len()..self.free.len() {
-            let mut moved = increase(&self.free[c], landed.length);
+    pub fn look(&self, solved: &mut Solved) {
+        for c in solved.moved.len()..self.free.len() {
+            let mut moved = increase(&self.free[c], solved.length);
             let kernels = &self.kernels[c * self.closed..(c + 1) * self.closed];
-            let responses: Vec<Option<Matrix>> = kernels.iter().map(|kernel| response(kernel, landed.length)).collect();
-            respond(&mut moved, &responses, &landed.solved);
-            landed.moved.push(moved);
-            let end = self.end(landed, c, landed.length);
-            landed.end.push(end);
+            let responses: Vec<Option<Matrix>> = kernels.iter().map(|kernel| response(kernel, solved.length)).collect();
+            respond(&mut moved, &responses, &solved.collocated);
+            solved.moved.push(moved);
+            let end = self.end(solved, c, solved.length);
+            solved.end.push(end);
         }
     }
 
@@ -126,7 +126,7 @@ impl Window {
         unknowns: &mut [Unknown],
         newton: &mut Newton,
         counts: &mut Counts,
-    ) -> Option<Landed> {
+    ) -> Option<Solved> {
         let (free, responses) = (self.free_at_nodes(length), self.responses(length));
         for (unknown, series) in unknowns.iter_mut().zip(&self.free) {
             unknown.free = increase(series, length);
@@ -162,32 +162,32 @@ impl Window {
     fn arrive(
         &self,
         length: f64,
-        solved: Vec<Collocated>,
+        collocated: Vec<Collocated>,
         mut moved: Vec<Nodal>,
         responses: &[Option<Matrix>],
-    ) -> Landed {
-        let force = solved.iter().map(|solved| Legendre::through(&solved.acting)).collect();
+    ) -> Solved {
+        let force = collocated.iter().map(|own| Legendre::through(&own.acting)).collect();
         for (c, moved) in moved.iter_mut().enumerate() {
-            respond(moved, &responses[c * self.closed..(c + 1) * self.closed], &solved);
+            respond(moved, &responses[c * self.closed..(c + 1) * self.closed], &collocated);
         }
-        let moments = solved.iter().map(|solved| self.moments(&solved.acting)).collect();
-        let mut landed = Landed { length, solved, force, moments, moved, end: Vec::new() };
-        landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
-        landed
+        let moments = collocated.iter().map(|own| self.moments(&own.acting)).collect();
+        let mut solved = Solved { length, collocated, force, moments, moved, end: Vec::new() };
+        solved.end = (0..self.free.len()).map(|c| self.end(&solved, c, length)).collect();
+        solved
     }
 
     /// Overlap of a contact and its first two derivatives at the end, if these forces are truncated or extrapolated to another
     /// length. Those that end as `t^(3/2)` are stretched, since they end with the panel.
-    pub fn end(&self, from: &Landed, c: usize, length: f64) -> [f64; 3] {
+    pub fn end(&self, from: &Solved, c: usize, length: f64) -> [f64; 3] {
         let mut end = value(&self.free[c], length);
         let part = length / from.length;
         for (other, force) in from.force.iter().enumerate() {
-            let ends = from.solved[other].ends;
-            let moments = match ends.ends || part == 1.0 {
+            let ends = from.collocated[other].ends;
+            let moments = match ends.at_end || part == 1.0 {
                 true => from.moments[other],
                 false => self.moments(&force.at_each(&BASIS.nodes.map(|s| s * part))),
             };
-            let last = if ends.ends { 0.0 } else { force.at(part) };
+            let last = if ends.at_end { 0.0 } else { force.at(part) };
             add_end(&self.kernels[c * self.closed + other], length, &moments, last, &mut end);
         }
         end
@@ -210,29 +210,29 @@ impl Window {
     }
 
     /// Advances the modes to the end of a solved panel.
-    pub fn advance(&self, system: &System, landed: &Landed, amplitude: &mut [f64], rate: &mut [f64]) {
-        coast(system, landed.length, amplitude, rate);
-        for (c, moments) in self.contacts[..self.closed].iter().zip(&landed.moments) {
-            push(system, &system.links[*c], landed.length, moments, amplitude, rate);
+    pub fn advance(&self, system: &System, solved: &Solved, amplitude: &mut [f64], rate: &mut [f64]) {
+        coast(system, solved.length, amplitude, rate);
+        for (c, moments) in self.contacts[..self.closed].iter().zip(&solved.moments) {
+            push(system, &system.links[*c], solved.length, moments, amplitude, rate);
         }
     }
 
     /// The same forces on another length.
-    pub fn with_length(&self, from: &Landed, length: f64) -> Landed {
+    pub fn with_length(&self, from: &Solved, length: f64) -> Solved {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
         let carry = |nodal: &Nodal| Legendre::through(nodal).at_each(&places);
         let carried = |(solved, free): (&Collocated, &Series)| {
             let moved = carry(&solved.moved);
             Collocated {
-                force: if solved.ends.ends { solved.force } else { carry(&solved.force) },
+                force: if solved.ends.at_end { solved.force } else { carry(&solved.force) },
                 ends: solved.ends,
-                acting: if solved.ends.ends { solved.acting } else { carry(&solved.acting) },
+                acting: if solved.ends.at_end { solved.acting } else { carry(&solved.acting) },
                 compression: moved.map(|moved| free[0] + moved),
                 moved,
                 rate: carry(&solved.rate),
             }
         };
-        let solved = from.solved.iter().zip(&self.free).map(carried).collect();
+        let solved = from.collocated.iter().zip(&self.free).map(carried).collect();
         self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))
     }
 }

@@ -3,7 +3,7 @@
 
 use super::dense::Event;
 use super::enclosure::first_difference;
-use super::motion::{March, Target};
+use super::motion::{Crossing, March};
 use super::solution::Interval;
 use super::state::{Phase, State, Touch};
 use super::terminal::series_of;
@@ -73,7 +73,7 @@ impl<'a> March<'a> {
         for _ in 0..MOST_PASSED {
             let State { overlap, rate, boundaries, .. } = &self.states[c];
             let Some(boundary) = boundaries.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
-            self.transition(Target { contact: c, boundary });
+            self.transition(Crossing { contact: c, boundary });
             // unlike a boundary that was located, these may be far behind
             if let Some(touch) = self.states[c].touch_mut() {
                 (touch.residue, touch.rate_residue) = (0.0, 0.0);
@@ -205,15 +205,15 @@ impl<'a> March<'a> {
     }
 
     /// The transition at a zero of an event function.
-    pub(super) fn transition(&mut self, target: Target) {
-        let c = target.contact;
+    pub(super) fn transition(&mut self, crossing: Crossing) {
+        let c = crossing.contact;
         let law = self.law(c);
         let Some(touch) = self.states[c].touch() else {
             return self.close(c, 0.0);
         };
-        let Some(&boundary) = self.states[c].boundaries.get(target.boundary) else { return };
+        let Some(&boundary) = self.states[c].boundaries.get(crossing.boundary) else { return };
         let (residue, rate_residue) = self.states[c].beside(&boundary);
-        match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
+        match law.cross(&touch.branch, crossing.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
                 self.enter(c, branch);
                 if let Some(touch) = self.states[c].touch_mut() {
@@ -221,7 +221,7 @@ impl<'a> March<'a> {
                 }
                 let relaxed = self.level_of_relaxation(c);
                 self.level = self.level.max(relaxed);
-                self.event(c, Event::Cross(target.boundary));
+                self.event(c, Event::Cross(crossing.boundary));
             }
             After::Release(memory) => {
                 let (overlap, _) = self.overlap_of_modes(c);
@@ -241,7 +241,7 @@ impl<'a> March<'a> {
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.discard_predictions();
                 self.depart();
-                self.event(c, Event::Cross(target.boundary));
+                self.event(c, Event::Cross(crossing.boundary));
             }
         }
     }

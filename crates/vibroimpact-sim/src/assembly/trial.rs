@@ -135,7 +135,7 @@ impl<'a> March<'a> {
 
     /// How the force of a closed contact begins on a panel from here on.
     pub(super) fn begins(&self, c: usize) -> Ends {
-        Ends { begins: self.states[c].touch().is_some_and(|touch| touch.begins), ends: false }
+        Ends { at_start: self.states[c].touch().is_some_and(|touch| touch.begins), at_end: false }
     }
 
     /// Increase of the overlap of a contact up to the nodes without contact forces, and its rate if the force may depend on it.

@@ -18,8 +18,8 @@ pub(crate) const EXPONENT: f64 = 1.5;
 /// Whether a force begins on a panel, and ends on it, as `t^(3/2)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Ends {
-    pub begins: bool,
-    pub ends: bool,
+    pub at_start: bool,
+    pub at_end: bool,
 }
 
 /// The constants of a weight `w`.
@@ -31,19 +31,19 @@ struct Weight {
 }
 
 static WEIGHTS: LazyLock<[Weight; 3]> = LazyLock::new(|| {
-    [(true, false), (false, true), (true, true)].map(|(begins, ends)| Weight::new(Ends { begins, ends }))
+    [(true, false), (false, true), (true, true)].map(|(at_start, at_end)| Weight::new(Ends { at_start, at_end }))
 });
 
 impl Ends {
     /// A force without a singularity.
-    pub const SMOOTH: Ends = Ends { begins: false, ends: false };
+    pub const SMOOTH: Ends = Ends { at_start: false, at_end: false };
 
     pub fn is_smooth(self) -> bool {
         self == Ends::SMOOTH
     }
 
     fn weight(self) -> Option<&'static Weight> {
-        match (self.begins, self.ends) {
+        match (self.at_start, self.at_end) {
             (false, false) => None,
             (true, false) => Some(&WEIGHTS[0]),
             (false, true) => Some(&WEIGHTS[1]),
@@ -54,12 +54,12 @@ impl Ends {
     /// `w(s)`.
     fn at(self, s: f64) -> f64 {
         let power = |has: bool, distance: f64| if has { distance.max(0.0).powf(EXPONENT) } else { 1.0 };
-        power(self.begins, s) * power(self.ends, 1.0 - s)
+        power(self.at_start, s) * power(self.at_end, 1.0 - s)
     }
 
     /// The largest value of `w`.
     fn largest(self) -> f64 {
-        self.at(if self.begins == self.ends { 0.5 } else { f64::from(u8::from(self.begins)) })
+        self.at(if self.at_start == self.at_end { 0.5 } else { f64::from(u8::from(self.at_start)) })
     }
 
     /// Truncation estimate of the force, from `P`.
@@ -115,10 +115,10 @@ impl Ends {
         let mut best = (0..=GRID).map(|i| at(f64::from(i) / f64::from(GRID))).fold((0.0, f64::NEG_INFINITY), higher);
         // F' = 0 where P' v + P u = 0, with v = s (1-s) and w' = w u/v; factors of ends that are smooth are left out
         let (slope, bend) = (quotient.derivative(), quotient.derivative().derivative());
-        let (first, last) = (f64::from(u8::from(self.begins)), f64::from(u8::from(self.ends)));
+        let (first, last) = (f64::from(u8::from(self.at_start)), f64::from(u8::from(self.at_end)));
         for _ in 0..8 {
             let s = best.0;
-            let (from, to) = (if self.begins { s } else { 1.0 }, if self.ends { 1.0 - s } else { 1.0 });
+            let (from, to) = (if self.at_start { s } else { 1.0 }, if self.at_end { 1.0 - s } else { 1.0 });
             let (v, u) = (from * to, EXPONENT * (first * to - last * from));
             let (dv, du) = (first * to - last * from, -2.0 * EXPONENT * first * last);
             let [p, dp, ddp] = [quotient.at(s), slope.at(s), bend.at(s)];
@@ -159,8 +159,11 @@ mod tests {
     use super::*;
     use crate::panel::legendre::dot;
 
-    const ALL: [Ends; 3] =
-        [Ends { begins: true, ends: false }, Ends { begins: false, ends: true }, Ends { begins: true, ends: true }];
+    const ALL: [Ends; 3] = [
+        Ends { at_start: true, at_end: false },
+        Ends { at_start: false, at_end: true },
+        Ends { at_start: true, at_end: true },
+    ];
 
     fn smooth(s: f64) -> f64 {
         2.0 - s + 0.7 * s * s
