@@ -32,8 +32,8 @@ struct Step {
 const STEPS: [Step; 7] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
-        // beside third parties that give it the features of the other steps, which use what is compiled here; the job `alone` of
-        // ci.yml checks it with its own features
+        // beside third parties that give the libraries the features of the other steps, so that these use what is compiled here; the
+        // job `alone` of ci.yml checks the library with its own features
         name: "lints of the libraries",
         arguments: &[
             "clippy",
@@ -51,7 +51,7 @@ const STEPS: [Step; 7] = [
         rustdocflags: "",
     },
     Step {
-        // without the tests, whose further dependencies would come first
+        // without the tests, which take as long again
         name: "lints",
         arguments: &["clippy", "--workspace", "--locked", "FEATURES", "--", "-D", "warnings"],
         rustdocflags: "",

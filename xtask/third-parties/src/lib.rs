@@ -1,5 +1,5 @@
 //! Nothing but dependencies: those of the workspace that turn on features of third parties below them.
 //!
-//! A package that has other features in the lints of the libraries, in all lints, or in the tests has to be compiled for each of
-//! them, with everything above it. As ordinary dependencies of a member of the workspace, which is checked beside the libraries,
-//! these make its features the same everywhere.
+//! A third party is compiled again, with everything above it, wherever it has other features. As ordinary dependencies of this
+//! package the ones listed here give every check the same features: all lints, the documentation and the tests of the workspace, and
+//! the lints of the libraries, which are run beside this package.

@@ -32,7 +32,7 @@ pub(crate) struct QuasiStatic {
 
 impl QuasiStatic {
     /// For the modes of a body from the `from`-th on, whose `1/omega` are given.
-    fn follow(&mut self, body: &Range<usize>, from: usize, inverse: &[f64], forces: &[ContactForce]) {
+    fn update(&mut self, body: &Range<usize>, from: usize, inverse: &[f64], forces: &[ContactForce]) {
         for row in [&mut self.at, &mut self.rate] {
             row.clear();
             row.resize(inverse.len(), 0.0);
@@ -105,7 +105,7 @@ pub(crate) fn of_panel(
                 },
             )
         } else {
-            quasi_static.follow(&span.modes, from, inverse, forces);
+            quasi_static.update(&span.modes, from, inverse, forces);
             let rows = [psi, a, b, &quasi_static.at, &quasi_static.rate, inverse, values, slopes, bends];
             vectorized(
                 #[inline(always)]

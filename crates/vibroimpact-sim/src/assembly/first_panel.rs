@@ -126,19 +126,13 @@ fn first_level_where(from: i32, holds: impl Fn(i32) -> bool) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Of the Legendre polynomial `P_8(2s - 1)` in a power of `s`.
-    fn coefficient_of_p8(power: f64) -> f64 {
-        let falling: f64 = (0..8).map(|k| power - f64::from(k)).product();
-        let rising: f64 = (1..=9).map(|k| power + f64::from(k)).product();
-        17.0 * falling / rising
-    }
+    use crate::panel::legendre::{Q, coefficients};
 
     /// The largest term that a polynomial of degree seven leaves out of a force at first touch.
     #[test]
     fn errors_of_a_first_panel_are_those_of_the_derivation() {
-        for (constant, derived) in [(SINGULAR, coefficient_of_p8(1.5)), (WEIGHTED, 6.0 / 35.0 * coefficient_of_p8(2.5))]
-        {
+        let left_out = |power: f64| coefficients(power).nth(Q).unwrap();
+        for (constant, derived) in [(SINGULAR, left_out(1.5)), (WEIGHTED, 6.0 / 35.0 * left_out(2.5))] {
             assert!((1.0..1.1).contains(&(constant / derived.abs())), "{constant} {derived}");
         }
     }

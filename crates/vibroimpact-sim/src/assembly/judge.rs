@@ -201,7 +201,7 @@ impl<'a> March<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::legendre::BASIS;
+    use crate::panel::legendre::{BASIS, coefficients};
 
     /// The overlap under the last Legendre polynomial as the acceleration, integrated twice by the differential equation of these
     /// polynomials, is `s^2 (1 - s)^2` times the slope of the slope of `P_7`, over `7 8 (7 8 - 2)`.
@@ -223,13 +223,8 @@ mod tests {
 
     #[test]
     fn the_error_of_a_force_where_it_begins_is_bounded() {
-        // of the Legendre polynomials in s^(3/2), each from the one before; at the start all those beyond the second have one sign
-        let next = |coefficient: &mut f64, n: u32| {
-            let n = f64::from(n);
-            *coefficient *= (2.0 * n + 1.0) / (2.0 * n - 1.0) * (2.5 - n) / (2.5 + n);
-            Some(*coefficient)
-        };
-        let all: Vec<f64> = std::iter::once(0.4).chain((1..100_000).scan(0.4, next)).collect();
+        // at the start all polynomials beyond the second contribute with one sign
+        let all: Vec<f64> = coefficients(1.5).take(100_000).collect();
         let estimate = Legendre(std::array::from_fn(|n| all[n])).truncation();
         let tail: f64 = all[Q..].iter().map(|coefficient| coefficient.abs()).sum();
         assert!((1.0..2.0).contains(&(TAIL * estimate / tail)), "{estimate} {tail}");

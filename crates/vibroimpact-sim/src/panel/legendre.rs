@@ -1,5 +1,7 @@
 //! The step's polynomial basis: Legendre polynomials on [0, 1] and their Gauss nodes.
 
+#[cfg(test)]
+pub(crate) use super::polynomial::coefficients;
 pub(crate) use super::polynomial::{Legendre, Nodal, Q, dot, legendre};
 use super::vector::vectorized;
 use gauss_quad::legendre::GaussLegendre;

@@ -39,6 +39,18 @@ pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
     sum
 }
 
+/// Coefficients of the Legendre polynomials `P_n(2s - 1)`, `n = 0, 1, ...`, in a power of `s` that is no whole number.
+#[cfg(test)]
+pub(crate) fn coefficients(power: f64) -> impl Iterator<Item = f64> {
+    let first = 1.0 / (power + 1.0);
+    let next = move |coefficient: &mut f64, n: u32| {
+        let n = f64::from(n);
+        *coefficient *= (2.0 * n + 1.0) / (2.0 * n - 1.0) * (power + 1.0 - n) / (power + 1.0 + n);
+        Some(*coefficient)
+    };
+    std::iter::once(first).chain((1..).scan(first, next))
+}
+
 /// A polynomial of degree `Q - 1` on [0, 1], `sum_n c_n P_n(2s-1)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Legendre(pub [f64; Q]);
