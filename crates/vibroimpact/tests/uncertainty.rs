@@ -587,6 +587,33 @@ fn stated_modes_with_remainder_modes_agree_by_accident() {
     }
 }
 
+/// Many stated modes, whose truncated ones respond as a spring: of a slender beam, of a Timoshenko beam with a step, and of one that is
+/// struck softly. The other impacts, which have few modes, cost less than half as much as the impact itself.
+#[test]
+fn the_effect_of_a_static_tail_is_known_from_few_modes() {
+    let steel = |length_m: f64, thickness_m: f64| json!({ "length_m": length_m, "width_m": 0.012, "thickness_m": thickness_m, "material": "steel" });
+    let beam = |theory: &str, segments: &[Value]| json!({ "kind": "beam", "theory": theory, "ends": ["pinned", "clamped"], "damping_ratio": 0.01, "segments": segments });
+    for (structure, stiffness) in [
+        (beam("euler-bernoulli", &[steel(1.0, 0.012)]), 1e9),
+        (beam("timoshenko", &[steel(0.7, 0.012), steel(0.3, 0.008)]), 1e9),
+        (beam("euler-bernoulli", &[steel(1.0, 0.012)]), 1e6),
+    ] {
+        let scene = json!({
+            "structure": structure, "location_m": 0.3, "modes": 300,
+            "striker": { "material": "steel", "radius_m": 0.02, "speed_m_s": 1 },
+            "contact": { "law": "hertz", "stiffness_n_m1_5": stiffness }
+        });
+        let scene = Scene::from_value(&scene).unwrap();
+        // another theory is not compared
+        let found = scene.answer_with(&mut Kept::default()).unwrap();
+        let error = (found.restitution.unwrap() - converged(&scene, 1200, 1e-10)).abs();
+        let stated = found.uncertainty.modes_left_out.unwrap();
+        assert!(error < stated && stated < 2.0 * error, "{error:e} {stated:e}");
+        let itself = 300 * scene.impact().unwrap().solve().unwrap().counts.steps();
+        assert!(2 * found.cost.mode_steps < 3 * itself, "{} {itself}", found.cost.mode_steps);
+    }
+}
+
 /// A force that jumps at first touch, after one contact and after three: errors decrease as slowly as 1/N, and the change between two
 /// richer impacts is accidentally small. Without a third number of modes the first error is 1.3 times what is stated, the second twice,
 /// and the third, with remainder modes, 1.3 times.

@@ -28,19 +28,22 @@
 //!
 //! More modes take more and shorter steps, or have further contacts, so that the impact with more modes may stop where the stated one
 //! does not. `M` is then the number of the stated modes; if that stops as well, nothing is known about the truncated modes.
+//!
+//! Where the truncated modes respond as a spring, fewer modes show their effect (`static_tail.rs`).
 
 use vibroimpact_sim::modal::{Settings, Solution};
-use vibroimpact_sim::{StopReason, both, dropped_rod};
+use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
-use super::guess::{fewer, guess};
+use super::guess::fewer;
 use super::left_out::{Change, by_changes, energy_of_remainder, jumps, restitution_per_impulse, with_softer_remainder};
-use super::pose::Pose;
+use super::other_modes::{moves_before, needed, solve, with_modes};
 use super::settle::{Conclusion, LUCK};
+use super::static_tail::StaticTail;
 use super::uncertainty::Known;
-use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
+use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
 use crate::impact::Impact;
-use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
+use crate::scene::{InvalidInput, Scene, Structure, chooses_modes};
 use crate::text::counted;
 
 /// The comparison begins with the expected number of modes for this tolerance.
@@ -91,8 +94,15 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
             }
             None => compare(scene, kept, &impact, cost)?,
         };
+        let left_out = match compared {
+            Comparison::Fewer(tail) => match tail.left_out(&impact, &solution) {
+                Some(left_out) => Ok(left_out),
+                None => compare_with_more(scene, kept, &impact, cost)?.map(|more| more.left_out(&impact, &solution)),
+            },
+            Comparison::More(compared) => compared.map(|more| more.left_out(&impact, &solution)),
+        };
         let solver = solver.ok_or("the same impact with a coarser tolerance stopped before it ended");
-        Known::new(scene, solver, compared.map(|compared| compared.left_out(&impact, &solution)))
+        Known::new(scene, solver, left_out)
     } else {
         Known::default()
     };
@@ -100,12 +110,6 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     let settled = solver.is_some_and(|u| u <= wanted);
     let conclusion = Conclusion { known, settled, spread: solver.filter(|_| !settled), reason };
     Ok(Choice::modal(tolerance, impact, solution, conclusion))
-}
-
-fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, InvalidInput> {
-    let (solution, _) = impact.solve_with(kept)?;
-    cost.add(&solution.counts, impact.structure.modes.len());
-    Ok(solution)
 }
 
 /// The same impact with other modes.
@@ -171,8 +175,24 @@ impl Compared {
     }
 }
 
+/// Other impacts that show the effect of the truncated modes.
+enum Comparison {
+    /// With fewer modes, if the truncated ones respond as a spring.
+    Fewer(StaticTail),
+    /// With more modes, or why that is not known.
+    More(Result<Compared, String>),
+}
+
+/// Solves the impact with other modes.
+fn compare(scene: &Scene, kept: &mut Kept, impact: &Impact, cost: &mut Cost) -> Result<Comparison, InvalidInput> {
+    Ok(match StaticTail::of(scene, impact, kept, cost)? {
+        Some(tail) => Comparison::Fewer(tail),
+        None => Comparison::More(compare_with_more(scene, kept, impact, cost)?),
+    })
+}
+
 /// Solves the impact with more modes; the inner `Err` states why the effect of the truncated modes is not known.
-fn compare(
+fn compare_with_more(
     scene: &Scene,
     kept: &mut Kept,
     impact: &Impact,
@@ -201,7 +221,7 @@ fn compare(
     }
 }
 
-/// As [`compare`], with `more` modes in place of the stated `count`, of the `most` that there are.
+/// As [`compare_with_more`], with `more` modes in place of the stated `count`, of the `most` that there are.
 fn compare_with(
     scene: &Scene,
     kept: &mut Kept,
@@ -219,7 +239,7 @@ fn compare_with(
         if whole && modes == count {
             return Ok((Other::Itself, complete(impact)));
         }
-        let other = Impact { settings, ..posed(&with_modes(scene, count, modes), kept)? };
+        let other = Impact { settings, ..with_modes(scene, count, modes, kept)? };
         let solution = solve(&other, kept, cost)?;
         let energy = energy_of_remainder(&other, &solution);
         Ok((Other::Solved(solution, energy), complete(&other)))
@@ -246,7 +266,7 @@ fn compare_with(
         _ => 0.0,
     };
     let softer = if uncertain_m_n > 0.0 {
-        let other = posed(&with_modes(scene, count, more), kept)?;
+        let other = with_modes(scene, count, more, kept)?;
         let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
         let solution = solve(&Impact { structure, settings, ..other }, kept, cost)?;
         if let Some(reason) = solution.outcome.stopped_by() {
@@ -263,50 +283,4 @@ fn compare_with(
 fn not_compared(modes: usize, reason: StopReason) -> String {
     let (modes, reason) = (counted(modes as u64, "mode", "modes"), reason.as_str());
     format!("the impact with {modes}, and remainder modes for the others, stopped before it ended ({reason})")
-}
-
-fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
-    scene.impact_of(scene.modes.count(), kept)
-}
-
-/// The expected number of modes for a tolerance, if it is known.
-pub(super) fn needed(
-    scene: &Scene,
-    tolerance: f64,
-    kept: &mut Kept,
-    cost: &mut Cost,
-) -> Result<Option<usize>, InvalidInput> {
-    if modal_only(scene).is_some() {
-        return Ok(None);
-    }
-    let chosen = Scene {
-        model: Model::Auto,
-        modes: Modes::Auto,
-        residual_compliance: Some(true),
-        tolerance: Some(tolerance),
-        ..scene.clone()
-    };
-    Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?))
-}
-
-/// Whether the structure moves before the impact.
-fn moves_before(scene: &Scene) -> bool {
-    scene.start.is_some() || matches!(scene.structure, Structure::DroppedRod(_))
-}
-
-/// The scene with this many modes in place of `count`, and remainder modes for the others.
-fn with_modes(scene: &Scene, count: usize, modes: usize) -> Scene {
-    let mut other = scene.clone();
-    match &mut other.structure {
-        Structure::DroppedRod(rod) => {
-            let further = (modes - count).div_ceil(2);
-            let with = |stated: usize| (stated + further).min(dropped_rod::MOST_MODES);
-            (rod.bending_modes, rod.axial_modes) = (with(rod.bending_modes), with(rod.axial_modes));
-        }
-        _ => {
-            other.modes = Modes::Count(modes);
-            other.residual_compliance = Some(true);
-        }
-    }
-    other
 }

@@ -16,7 +16,7 @@
 use vibroimpact_sim::both;
 use vibroimpact_sim::modal::Settings;
 
-use super::stated::needed;
+use super::other_modes::needed;
 use super::uncertainty::Uncertainty;
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
