@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use tasks::Failure;
 use vibroimpact::Scene;
+use vibroimpact::model::Modes;
 use vibroimpact_sim::modal::Settings;
 
 fn uncounted(values: Vec<f64>) -> Found {
@@ -203,17 +204,28 @@ pub fn scenes(root: &Path) -> Result<Vec<Problem>, Failure> {
         Ok(uncounted(vec![modes.len() as f64, last.omega_rad_s, last.shape]))
     });
     let mut problems = vec![problem.rounding(1e-12)];
-    for name in ["pinned-beam", "pinned-beam-converged", "stepped-cantilever"] {
+    let cases = [
+        ("pinned-beam", None),
+        ("pinned-beam-converged", None),
+        ("stepped-cantilever", None),
+        ("pinned-beam", Some(1000)),
+    ];
+    for (name, modes) in cases {
         let text = std::fs::read_to_string(root.join(format!("datasets/scenes/{name}.json")))?;
-        let tighter = text.clone();
+        let posed = move || -> Result<Scene, Failure> {
+            let scene = Scene::from_json(&text)?;
+            Ok(Scene { modes: modes.map_or(scene.modes, Modes::Count), ..scene })
+        };
+        let tighter = posed.clone();
+        let modes = modes.map_or_else(String::new, |modes| format!(", N={modes}"));
         problems.push(Problem::against_tighter(
-            format!("scenes/simulate, {name}"),
+            format!("scenes/simulate, {name}{modes}"),
             move || {
-                let scene = Scene::from_json(&tighter)?;
+                let scene = tighter()?;
                 let tolerance = scene.tolerance.unwrap_or(Settings::default().tolerance);
                 simulated(&Scene { tolerance: Some(0.01 * tolerance), ..scene })
             },
-            move || simulated(&Scene::from_json(&text)?).map(uncounted),
+            move || simulated(&posed()?).map(uncounted),
         ));
     }
     Ok(problems)
