@@ -756,6 +756,27 @@ fn bodies_of_equal_speed_do_not_touch() {
     }
 }
 
+/// The energies of a motion at 1e-170 m/s are zero in floating point, so that every motion would count as one that has ended.
+#[test]
+fn speeds_whose_energies_underflow_have_no_restitution() {
+    let structure = pinned(10, 0.01, 0.4);
+    let solver = Solver::new(&structure).unwrap();
+    let law = KelvinVoigt { stiffness_n_m: 2e6, damping_n_s_m: 40.0 };
+    let solve = |speed_m_s: f64| solver.solve(&Striker { mass_kg: 0.2, speed_m_s }, &law, None, &settings(1e-9));
+    let [slow, usual] = [1e-60, 1.0].map(|speed_m_s| solve(speed_m_s).unwrap());
+    assert!((slow.restitution.unwrap() - usual.restitution.unwrap()).abs() < 1e-9, "{slow:?} {usual:?}");
+    for speed_m_s in [9e-61, 1e-300, -1e-300, 5e-324] {
+        let fault = solve(speed_m_s).map(drop).unwrap_err();
+        assert!(fault.field == "speed_m_s" && fault.allowed.contains("1e-60"), "{fault}");
+    }
+    // a structure of one rigid-body motion that moves as slowly towards a striker at rest
+    let rigid = Structure { modes: vec![Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 1.0 }] };
+    let start = Start { rate: vec![1e-300], ..Start::at_rest(1) };
+    let striker = Striker { mass_kg: 0.2, speed_m_s: 0.0 };
+    let solution = Solver::new(&rigid).unwrap().solve(&striker, &law, Some(&start), &settings(1e-9)).unwrap();
+    assert_eq!(solution.restitution, None, "{solution:?}");
+}
+
 #[test]
 fn frequencies_beyond_the_range_of_the_solver_are_rejected() {
     let with = |omega_rad_s: f64| Structure { modes: vec![Mode { omega_rad_s, damping_ratio: 0.0, shape: 1.0 }] };

@@ -340,10 +340,11 @@ fn errors_name_the_field_that_has_to_change() {
     let modes = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
     let axis = r#"{ "field": "modes", "from": 1, "to": 3, "count": 5 }"#;
     let drawn = r#"{ "seed": 1, "draws": 2, "fields": [{ "field": "modes", "from": 1, "to": 3 }] }"#;
-    let modal = |mass: &str, speed: &str| {
+    let modal = |mass: &str, damping: &str| {
         format!(
-            r#"{{ "structure": {{ "kind": "modal", "omega_rad_s": [100, 400], "shape_at_location": [1, 1] }},
-            "striker": {{ "mass_kg": {mass}, "speed_m_s": {speed} }},
+            r#"{{ "structure": {{ "kind": "modal", "omega_rad_s": [100, 400], "shape_at_location": [1, 1],
+                              "damping_ratios": [{damping}, 0] }},
+            "striker": {{ "mass_kg": {mass}, "speed_m_s": 1 }},
             "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1e9 }} }}"#
         )
     };
@@ -367,7 +368,8 @@ fn errors_name_the_field_that_has_to_change() {
         ("larger.toml", "striker = { mass_kg = 1, speed_m_s = 18446744073709551615 }\n"),
         ("twice.toml", "[striker]\nspeed_m_s = 1\nspeed_m_s = 2\n"),
         ("tiny.json", &modal("1", "5e-324")),
-        ("heavy.json", &modal("1.79e308", "1")),
+        ("creeping.json", &modal("1", "0").replace("\"speed_m_s\": 1", "\"speed_m_s\": 1e-300")),
+        ("heavy.json", &modal("1.79e308", "0")),
     ]);
     let predictability = ["predictability", "scene.json", "--out", "o", "--over"];
     for (arguments, part) in [
@@ -394,7 +396,14 @@ fn errors_name_the_field_that_has_to_change() {
         (&["simulate", "large.toml"], "line 2, column 13, in speed_m_s: the whole number 99999999999999999999"),
         (&["simulate", "larger.toml"], "in speed_m_s: the whole number 18446744073709551615"),
         (&["simulate", "twice.toml"], "line 3, column 1: the key \"speed_m_s\" occurs twice"),
-        (&["sensitivity", "tiny.json", "--by", "striker.speed_m_s"], "its neighbours cannot be distinguished from it"),
+        (
+            &["sensitivity", "tiny.json", "--by", "structure.damping_ratios[0]"],
+            "its neighbours cannot be distinguished from it",
+        ),
+        (
+            &["simulate", "creeping.json"],
+            "striker.speed_m_s = 1e-300 is not allowed; it must be 0, or a number from 1e-60",
+        ),
         (&["emoc", "heavy.json"], "striker.mass_kg = 1.79e+308 is not allowed; it must be such that Z"),
         (&["simulate", "scene.json", "--intervals", "-1"], "invalid value '-1' for '--intervals <N>'"),
         (&["sweep", "axis.json", "--out", "o", "--threads", "-1"], "invalid value '-1' for '--threads <N>'"),

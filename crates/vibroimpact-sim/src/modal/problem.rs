@@ -7,6 +7,9 @@ use invalid_input::InvalidInput;
 
 /// The least mass (kg), the reciprocal of the largest: wide enough for any unit system, narrow enough that no product overflows.
 const SCALE_MIN: f64 = 1e-30;
+/// The least speed of approach (m/s): energies of slower motions are lost to underflow, and with them the proof that the impact is
+/// over.
+pub(super) const SPEED_MIN: f64 = 1e-60;
 /// A mode that moves less than this (kg^-1/2) at the contact is not moved by it.
 const SHAPE_FLOOR: f64 = 1e-30;
 /// A mode is not excited whose share of every response at the contact is less than this. Shapes at their nodes have such shares,
@@ -167,10 +170,10 @@ impl Striker {
             "a positive number from 1e-30 to 1e30, or infinity for an immovable stop",
         )?;
         InvalidInput::unless(
-            self.speed_m_s.abs() <= SCALE_MAX,
+            self.speed_m_s == 0.0 || (SPEED_MIN..=SCALE_MAX).contains(&self.speed_m_s.abs()),
             "speed_m_s",
             self.speed_m_s,
-            "a finite number of at most 1e30 in size",
+            "0, or a number from 1e-60 to 1e30 in size",
         )
     }
 }

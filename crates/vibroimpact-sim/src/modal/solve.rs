@@ -2,7 +2,7 @@
 
 use super::history::{History, all_modes};
 use super::posed;
-use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
+use super::problem::{Mode, SPEED_MIN, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use crate::StopReason;
@@ -443,9 +443,7 @@ impl Solver {
             Outcome::Sustained => 0.0,
             _ => run.striker_velocity_m_s - rigid_motion(&self.modes, &run.rate),
         };
-        let ratio = separation / before;
-        // the ratio to an approach of 1e-310 m/s overflows on a structure that moves
-        (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
+        (ended && before >= SPEED_MIN && free).then(|| separation / before)
     }
 
     /// The restitution of a run, with those that an end after each contact would have had.
