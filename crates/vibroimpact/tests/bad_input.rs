@@ -82,6 +82,38 @@ fn a_parameter_that_the_data_do_not_determine_is_not_called_converged() {
     assert!(stdout(&run(folder.path(), &fit)).contains("not determined by these data"));
 }
 
+/// Text that is no number, and numbers out of range, of every option that asks for a number.
+#[test]
+fn numbers_of_options_are_refused_with_their_range() {
+    let folder = folder(&[("scene.json", BEAM), ("data.csv", TABLE)]);
+    let identify = ["identify", "data.csv", "--scene", "scene.json", "--free", "contact.stiffness_n_m1_5"];
+    let predictability = ["predictability", "scene.json", "--over", "location_m=0.1:0.2:3", "--blur", "location_m=1%"];
+    for (command, option, values, allowed) in [
+        (&["orbit", "scene.json"][..], "--periods", ["0", "1001", "1e2"], "a whole number from 1 to 1000"),
+        (&["orbit", "scene.json"], "--search", ["-1", "10000001", "x"], "a whole number from 0 to 10000000"),
+        (&["orbit", "scene.json"], "--transient", ["-1", "4294967296", "x"], "a whole number from 0 to 4294967295"),
+        (&["orbit", "scene.json", "--over", "end_s"], "--doublings", ["-1", "9", ""], "a whole number from 0 to 8"),
+        (&["sweep", "sweep.json", "--out", "out"], "--threads", ["0", "4097", "x"], "a whole number from 1 to 4096"),
+        (&identify, "--starts", ["0", "1001", "x"], "a whole number from 1 to 1000"),
+        (
+            &predictability,
+            "--draws",
+            ["-1", "1e3", "99999999999999999999"],
+            "a whole number from 0 to 18446744073709551615",
+        ),
+        (&["infinite-beam", "turning-points"], "--count", ["0", "61", "x"], "a whole number from 1 to 60"),
+        (&["emoc", "scene.json"], "--mu0", ["x", "1,5", ""], "a number"),
+        (&["emoc", "scene.json"], "--alpha0", ["x", "1,5", ""], "a number"),
+        (&["emoc", "scene.json"], "--alpha1", ["x", "1,5", ""], "a number"),
+    ] {
+        for value in values {
+            let message = refused(folder.path(), &[command, &[&format!("{option}={value}")]].concat());
+            let part = format!("invalid value '{value}' for '{option}");
+            assert!(message.contains(&part) && message.contains(&format!("it must be {allowed}")), "{message}");
+        }
+    }
+}
+
 #[test]
 fn structures_without_modes_are_refused() {
     let folder = folder(&[

@@ -719,7 +719,7 @@ fn bad_options_are_refused_by_name() {
     }
     for (options, said) in [
         (["--level", "1"], "--level = 1.0 is not allowed; it must be a probability from 0.5 to 0.999"),
-        (["--starts", "0"], "--starts = 0 is not allowed"),
+        (["--starts", "0"], "it must be a whole number from 1 to 1000"),
         (
             ["--candidates", "next.csv"],
             "column restitution = 1 column is not allowed; it must be left out of a table of candidates",

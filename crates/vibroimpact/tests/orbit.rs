@@ -235,6 +235,12 @@ fn errors_name_the_field() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("loads = periods of together 10000000000000 s is not allowed"), "{message}");
+    // A scene of one impact has no bodies.
+    let single = datasets("scenes/pinned-beam.json").display().to_string();
+    let output = run(folder.path(), &["orbit", &single]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("left out, because a scene of bodies is needed here"), "{message}");
     // No load is periodic.
     let still = fs::read_to_string(&scene).unwrap().replace("\"frequency_hz\": 1.3", "\"frequency_hz\": null");
     fs::write(folder.path().join("still.json"), still).unwrap();

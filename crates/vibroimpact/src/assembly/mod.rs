@@ -206,6 +206,13 @@ impl AssemblyScene {
     /// As [`AssemblyScene::from_json`], except for the text.
     pub fn from_value(value: &Value) -> Result<AssemblyScene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
+        if value.get("bodies").is_none()
+            && let Some(structure) = value.get("structure")
+        {
+            let allowed = "left out, because a scene of bodies is needed here, with bodies, contacts and end_s; \
+                           `vibroimpact simulate` takes scenes of one impact";
+            return Err(InvalidInput::new("structure", json::quote(structure), allowed));
+        }
         let value = numbers_of_materials(value)?;
         let outline: Outline = json::read_whole(&value, "the scene")?;
         let body = |(name, value): (String, Value)| {

@@ -7,7 +7,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::infinite::{Summary, TurningPoints, files, picture, text, turning_points_text};
 use vibroimpact::report;
 use vibroimpact::trust::{Check, trust_text};
-use vibroimpact::vibroimpact_sim::infinite::{Scale, Settings, Solution, Structure, solve};
+use vibroimpact::vibroimpact_sim::infinite::{MOST_TURNING_POINTS, Scale, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
 use super::products::{Products, with_files};
@@ -51,7 +51,7 @@ enum Study {
     /// List the critical S and the turning points, at which the n-th separation disappears
     TurningPoints {
         /// Number of turning points, from the first (at the largest S); 1 to 60
-        #[arg(long, value_name = "N", value_parser = super::whole::<usize>, allow_negative_numbers = true)]
+        #[arg(long, value_name = "N", value_parser = super::whole(1..=MOST_TURNING_POINTS), allow_negative_numbers = true)]
         count: usize,
         /// Print one JSON object in place of the table
         #[arg(long)]

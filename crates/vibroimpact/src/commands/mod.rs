@@ -19,25 +19,28 @@ pub mod source;
 pub mod sweep;
 pub mod voice;
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
 use vibroimpact::export::Failure;
-use vibroimpact::scene::MOST_MODES;
 use vibroimpact::vibroimpact_sim::modal::Striker;
 use vibroimpact::{InvalidInput, Scene, scene, text};
 
-/// The value of an option that asks for a whole number.
-fn whole<T: std::str::FromStr>(text: &str) -> Result<T, String> {
-    text.parse().map_err(|_| "it must be a whole number not less than 0".to_owned())
+/// Reads the value of an option that asks for a whole number in a range.
+fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: FromStr + PartialOrd + Display + Clone,
+{
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("it must be a whole number from {} to {}", range.start(), range.end()))
+    }
 }
 
 /// The value of an option that asks for a number.
 fn real(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "it must be a number".to_owned())
-}
-
-/// The value of an option that asks for a number of modes.
-fn mode_count(text: &str) -> Result<usize, String> {
-    let count = text.parse().ok().filter(|count| (1..=MOST_MODES).contains(count));
-    count.ok_or_else(|| format!("it must be a whole number from 1 to {MOST_MODES}"))
 }
 
 /// The error for a number of modes that an option gave.

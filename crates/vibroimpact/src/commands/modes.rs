@@ -2,13 +2,13 @@
 
 use clap::Args;
 use vibroimpact::export::{self, Failure};
-use vibroimpact::scene::Structure;
+use vibroimpact::scene::{MOST_MODES, Structure};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::{pictures, text};
 
 use super::products::{Picture, with_files};
 use super::source::SceneSource;
-use super::{mode_count, of_option};
+use super::{of_option, whole};
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json                    ten frequencies, and shapes at the point of impact
@@ -28,7 +28,7 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
     /// Number of modes, from the lowest; default: 10, or all of a shorter list
-    #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_MODES), allow_negative_numbers = true)]
     count: Option<usize>,
     /// Print one JSON object in place of the table
     #[arg(long)]

@@ -6,10 +6,11 @@ use clap::Args;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
+use vibroimpact::scene::MOST_MODES;
 use vibroimpact::text;
 
 use super::source::{Changes, SceneSource};
-use super::{mode_count, of_option};
+use super::{of_option, real, whole};
 
 const EMOC_MODES: &str = "--emoc-modes";
 
@@ -49,16 +50,16 @@ pub struct EmocArguments {
     #[command(flatten)]
     scene: SceneSource,
     /// Moderated mass ratio coefficient, not negative; default 1
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_negative_numbers = true)]
     mu0: Option<f64>,
     /// Modal richness coefficient, not negative; default 1
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_negative_numbers = true)]
     alpha0: Option<f64>,
     /// Slow response coefficient, not negative; default 1
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_negative_numbers = true)]
     alpha1: Option<f64>,
     /// Number of modes in the law; default: that of the scene
-    #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_MODES), allow_negative_numbers = true)]
     emoc_modes: Option<usize>,
     /// Print one JSON object in place of the list
     #[arg(long)]
@@ -76,7 +77,7 @@ pub struct FitArguments {
     #[command(flatten)]
     changes: Changes,
     /// Number of modes in the law
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = mode_count, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = whole(1..=MOST_MODES), allow_negative_numbers = true)]
     emoc_modes: usize,
     /// Print one JSON object in place of the list
     #[arg(long)]

@@ -40,13 +40,13 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
     /// Periods of the load after which the motion repeats itself; for several loads, their common periods
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::whole::<u32>(1..=1000), allow_negative_numbers = true)]
     periods: u32,
     /// Periods of the load that are followed from the start before the search
-    #[arg(long, value_name = "N", value_parser = super::whole::<u32>, default_value_t = 100, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<u32>(0..=u32::MAX), default_value_t = 100, allow_negative_numbers = true)]
     transient: u32,
     /// Periods of the load that are followed in search of near returns if the transient leads to no periodic motion
-    #[arg(long, value_name = "N", default_value_t = 1500, value_parser = clap::value_parser!(u32).range(..=10_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1500, value_parser = super::whole::<u32>(0..=10_000_000), allow_negative_numbers = true)]
     search: u32,
     /// Follow the branch over this field of the scene
     #[arg(long, value_name = "FIELD", requires = "to")]
@@ -62,7 +62,7 @@ pub struct Arguments {
     step: f64,
     /// How often to follow the branches of twice the period that begin at period doublings: 1 for those of the branch itself,
     /// 2 also for theirs, and so on
-    #[arg(long, value_name = "N", requires = "over", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", requires = "over", default_value_t = 0, value_parser = super::whole::<u32>(0..=8), allow_negative_numbers = true)]
     doublings: u32,
     /// Print one JSON object in place of the summary
     #[arg(long)]

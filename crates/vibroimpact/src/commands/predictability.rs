@@ -36,10 +36,10 @@ pub struct Arguments {
     #[arg(long, required = true, value_name = "FIELD=WIDTH", value_parser = blur)]
     blur: Vec<Blur>,
     /// Draws at each point, rounded down to 16 times a power of two
-    #[arg(long, value_name = "N", value_parser = super::whole::<u64>, default_value_t = 256, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole(0..=u64::MAX), default_value_t = 256, allow_negative_numbers = true)]
     draws: u64,
     /// Seed of the draws
-    #[arg(long, value_name = "N", value_parser = super::whole::<u64>, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole(0..=u64::MAX), default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     #[command(flatten)]
     run: Run,

@@ -57,7 +57,7 @@ pub struct Extent {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Largest number of intervals of contact that are listed for a scene of bodies; the files contain all
-    #[arg(long, value_name = "N", value_parser = super::whole::<usize>, default_value_t = MOST_INTERVALS, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole(0..=usize::MAX), default_value_t = MOST_INTERVALS, allow_negative_numbers = true)]
     intervals: usize,
 }
 

@@ -60,7 +60,7 @@ pub struct Run {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Number of threads; default: one for each core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole::<u16>(1..=4096), allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Print one JSON object in place of the summary
     #[arg(long)]
