@@ -326,6 +326,41 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
     }
 }
 
+/// Fields whose allowed values differ from those of a field of the same name, or of the whole scene.
+#[test]
+fn the_allowed_values_are_those_of_the_very_field() {
+    for (place, value, field, allowed) in [
+        ("/bodies/rod/ends/1", json!("pinned"), "bodies.rod.ends[1]", "one of fixed, free"),
+        ("/bodies/rod/ends/1", json!("fixd"), "bodies.rod.ends[1]", "one of fixed, free; did you mean fixed?"),
+        (
+            "/bodies/rod/ends",
+            json!(1),
+            "bodies.rod.ends",
+            "a list of two, the left and the right end, each one of fixed, free",
+        ),
+        ("/bodies/rod/damping_ratio", json!(2e6), "bodies.rod.damping_ratio", "a number from 0 to 1e6"),
+        (
+            "/bodies/beam/start",
+            json!(1),
+            "bodies.beam.start",
+            "an object with gap_m, moving_modes, amplitude_m_kg0_5, rate_m_kg0_5_s, any of which may be left out",
+        ),
+        (
+            "/ground_motion",
+            json!(1),
+            "ground_motion",
+            "an object with displacement_m or acceleration_m_s2 and frequency_hz, or a measured acceleration",
+        ),
+    ] {
+        let mut spoilt = scene();
+        spoilt["bodies"]["beam"]["start"] = json!({});
+        spoilt["bodies"]["rod"]["damping_ratio"] = json!(0);
+        *spoilt.pointer_mut(place).unwrap() = value;
+        let fault = pose(&spoilt).unwrap_err();
+        assert_eq!((fault.field.to_string().as_str(), fault.allowed.as_ref()), (field, allowed), "{fault}");
+    }
+}
+
 #[test]
 fn a_load_at_an_undamped_frequency_is_refused_with_the_reason() {
     let mut scene = scene();

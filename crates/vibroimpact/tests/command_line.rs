@@ -282,6 +282,7 @@ fn wrong_types_and_unknown_fields_are_named() {
         ("/modes", json!(40.5), "modes = 40.5"),
         ("/modes", json!(-4), "modes = -4"),
         ("/residual_compliance", json!(1), "residual_compliance = 1"),
+        ("/start", json!(3), "start = 3"),
         ("/gravity_m_s2", json!(9.81), "gravity_m_s2 = 9.81"),
         ("/structure/segments/1/lenght_m", json!(1), "structure.segments[1].lenght_m = 1"),
     ] {
@@ -292,6 +293,7 @@ fn wrong_types_and_unknown_fields_are_named() {
         };
         let message = refusal(scene);
         assert!(message.contains(field) && message.contains(": "), "{field}: {message}");
+        assert!(!message.contains("with structure, striker and contact"), "of the whole scene: {message}");
     }
 }
 

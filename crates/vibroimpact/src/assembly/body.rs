@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::fields::KINDS;
 use super::rod::Rod;
-use crate::scene::json::{found, quote, read};
+use crate::scene::json::{found, quote, read, read_field};
 use crate::scene::{InvalidInput, Location, MovingMode, SceneError, Structure};
 
 /// A body, of the kind that `"kind"` names.
@@ -211,7 +211,7 @@ impl Elastic {
             "rod" => Elastics::Rod(Rod::from_value_beside(&own, &BESIDE)?),
             _ => Elastics::Structure(Structure::from_value_beside(&own, &BESIDE)?),
         };
-        let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
+        let start = start.as_ref().map(|start| read_field(start, "start")).transpose()?;
         Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })
     }
 }

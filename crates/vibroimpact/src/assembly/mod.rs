@@ -221,14 +221,14 @@ impl AssemblyScene {
         };
         let contact =
             |(i, value): (usize, &Value)| Contact::from_value(value).map_err(|fault| fault.at(i).within("contacts"));
-        let motion = outline.ground_motion.as_ref().map(json::read).transpose();
+        let motion = |value: &Value| json::read_field(value, "ground_motion");
         Ok(AssemblyScene {
             description: outline.description,
             bodies: outline.bodies.into_iter().map(body).collect::<Result<_, InvalidInput>>()?,
             contacts: outline.contacts.iter().enumerate().map(contact).collect::<Result<_, _>>()?,
             gravity_m_s2: outline.gravity_m_s2,
             loads: outline.loads,
-            ground_motion: motion.map_err(|fault| fault.within("ground_motion"))?,
+            ground_motion: outline.ground_motion.as_ref().map(motion).transpose()?,
             static_start: outline.static_start,
             end_s: outline.end_s,
             statistics_from_s: outline.statistics_from_s,

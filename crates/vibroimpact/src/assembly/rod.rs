@@ -3,12 +3,13 @@
 use std::f64::consts::PI;
 
 use beam_modes::{RodEnd, RodSegment};
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::scene::json::{objects, read_beside};
+use crate::scene::fields::{allowed_at, look_up, name_at};
+use crate::scene::json::{objects, read_told};
 use crate::scene::require_positive;
 use crate::scene::sets::{one_of_sets, schema_of_sets};
 
@@ -77,9 +78,14 @@ const SECTIONS: [&[&str]; 3] = [
     &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
 ];
 
+/// Allowed values of the ends, whose names differ from those of a beam.
+const ENDS: [(&str, &str); 2] =
+    [("ends", "a list of two, the left and the right end, each one of fixed, free"), ("ends[]", "one of fixed, free")];
+
 impl Rod {
     pub(super) fn from_value_beside(value: &Value, beside: &[&str]) -> Result<Rod, InvalidInput> {
-        read_beside(value, beside)
+        let allowed_at = |field: &Path| look_up(&ENDS, &name_at(field)).or_else(|| allowed_at(field));
+        read_told(value, beside, allowed_at)
     }
 
     /// The rod as input of [`beam_modes`].

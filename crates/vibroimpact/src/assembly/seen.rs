@@ -194,9 +194,8 @@ fn anywhere(body: &Elastic) -> (Option<Location>, Option<String>) {
 fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
     let count = count.ok_or_else(|| InvalidInput::missing("modes", STATED_MODES))?;
     crate::scene::require_count(count)?;
-    if !(rod.damping_ratio >= 0.0 && rod.damping_ratio.is_finite()) {
-        let value = number(rod.damping_ratio);
-        return Err(InvalidInput::new("damping_ratio", value, fields::NOT_NEGATIVE));
+    if !(0.0..=fields::MOST_DAMPING).contains(&rod.damping_ratio) {
+        return Err(InvalidInput::new("damping_ratio", number(rod.damping_ratio), fields::DAMPING));
     }
     rod.to_rod()?.modes(count)
 }

@@ -154,7 +154,7 @@ impl Scene {
         }
         let value = numbers_of_materials(value)?;
         let outline: Outline = json::read_whole(&value, "the scene")?;
-        let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
+        let start = outline.start.as_ref().map(|start| json::read_field(start, "start")).transpose()?;
         let mut scene = Scene {
             description: outline.description,
             structure: Structure::from_value(&outline.structure).map_err(|fault| fault.within("structure"))?,

@@ -175,6 +175,12 @@ pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -
     read_told(value, beside, fields::allowed_at)
 }
 
+/// As [`read`], for the object in the field of this name; faults carry the path from there.
+pub(crate) fn read_field<T: DeserializeOwned>(value: &Value, name: &str) -> Result<T, InvalidInput> {
+    let allowed_at = |field: &Path| if field.is_empty() { fields::allowed(name) } else { fields::allowed_at(field) };
+    read_told(value, &[], allowed_at).map_err(|fault| fault.within(name))
+}
+
 /// As [`read`]; an error of the whole object refers to it as `what`.
 pub(crate) fn read_whole<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, InvalidInput> {
     of_whole(read(value), what)
@@ -193,7 +199,8 @@ fn of_whole<T>(read: Result<T, InvalidInput>, what: &str) -> Result<T, InvalidIn
     read.map_err(|fault| if fault.field.is_empty() { fault.in_place(what) } else { fault })
 }
 
-fn read_told<T: DeserializeOwned>(
+/// As [`read_beside`], with the allowed values of each field.
+pub(crate) fn read_told<T: DeserializeOwned>(
     value: &Value,
     beside: &[&str],
     allowed_at: impl Fn(&Path) -> Option<&'static str>,
