@@ -337,6 +337,10 @@ fn every_command_has_a_manual_page() {
     }
     assert!(referred.iter().all(|name| folder.path().join(format!("man/{name}.1")).exists()), "{referred:?}");
     assert!(refused(&run(folder.path(), &["manual", "--out", "man"])).contains("this file exists"));
+    let page = "man/vibroimpact.1";
+    assert!(
+        refused(&run(folder.path(), &["manual", "--out", page])).contains("--out = man/vibroimpact.1 is not allowed")
+    );
     assert!(
         refused(&run(folder.path(), &["manual", "simulat"]))
             .contains("COMMAND = simulat is not allowed; it must be one of")

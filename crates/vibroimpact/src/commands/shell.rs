@@ -10,7 +10,7 @@ use vibroimpact::scene::schema;
 use vibroimpact::text::printable;
 use vibroimpact::{InvalidInput, sweep};
 
-use super::products::require_free;
+use super::products::{require_folder, require_free};
 
 pub const COMPLETIONS_EXAMPLES: &str = "Examples:
   vibroimpact completions bash > ~/.local/share/bash-completion/completions/vibroimpact
@@ -102,6 +102,7 @@ pub fn manual(ManualArguments { command, out, force }: ManualArguments, program:
     for command in commands().flat_map(|command| std::iter::once(command).chain(command.get_subcommands())) {
         pages.push((format!("{}.1", command.get_display_name().unwrap_or(command.get_name())), page(command)?));
     }
+    require_folder("--out", &folder)?;
     for (name, _) in &pages {
         require_free("--out", Some(&folder.join(name)), force)?;
     }
