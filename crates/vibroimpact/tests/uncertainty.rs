@@ -592,7 +592,10 @@ fn stated_modes_with_remainder_modes_agree_by_accident() {
 #[test]
 fn the_effect_of_a_static_tail_is_known_from_few_modes() {
     let steel = |length_m: f64, thickness_m: f64| json!({ "length_m": length_m, "width_m": 0.012, "thickness_m": thickness_m, "material": "steel" });
-    let beam = |theory: &str, segments: &[Value]| json!({ "kind": "beam", "theory": theory, "ends": ["pinned", "clamped"], "damping_ratio": 0.01, "segments": segments });
+    let beam = |theory: &str, segments: &[Value]| {
+        json!({ "kind": "beam", "theory": theory, "ends": ["pinned", "clamped"], "damping_ratio": 0.01,
+                "segments": segments })
+    };
     for (structure, stiffness) in [
         (beam("euler-bernoulli", &[steel(1.0, 0.012)]), 1e9),
         (beam("timoshenko", &[steel(0.7, 0.012), steel(0.3, 0.008)]), 1e9),

@@ -7,8 +7,9 @@ use vibroimpact_sim::modal::{self, Mode};
 use super::body::{Body, Elastic, Elastics, Mass, STATED_MODES, stated_modes};
 use super::load::{LARGEST, require_finite};
 use super::rod::Rod;
+use crate::scene::damping::require_damping;
 use crate::scene::json::number;
-use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
+use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure};
 
 /// A body whose modes have been computed, for shapes at any of its points.
 pub(super) struct Seen<'a> {
@@ -194,9 +195,7 @@ fn anywhere(body: &Elastic) -> (Option<Location>, Option<String>) {
 fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
     let count = count.ok_or_else(|| InvalidInput::missing("modes", STATED_MODES))?;
     crate::scene::require_count(count)?;
-    if !(0.0..=fields::MOST_DAMPING).contains(&rod.damping_ratio) {
-        return Err(InvalidInput::new("damping_ratio", number(rod.damping_ratio), fields::DAMPING));
-    }
+    require_damping(rod.damping_ratio)?;
     rod.to_rod()?.modes(count)
 }
 

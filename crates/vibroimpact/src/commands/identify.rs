@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use vibroimpact::InvalidInput;
 use vibroimpact::export::{self, Failure};
-use vibroimpact::identify::{self, Data, Free, Request};
+use vibroimpact::identify::{self, Data, Free, MOST_STARTS, Request};
 
 use super::headline;
 use super::products::{Picture, with_files};
@@ -48,7 +48,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD", value_delimiter = ',', required = true)]
     free: Vec<String>,
     /// Starting points of the search
-    #[arg(long, value_name = "N", value_parser = super::whole::<usize>(1..=1000), default_value_t = 4, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::whole(1..=MOST_STARTS), default_value_t = 4, allow_negative_numbers = true)]
     starts: usize,
     /// Probability with which an interval contains the true value of its field
     #[arg(long, value_parser = super::real, default_value_t = 0.95, allow_negative_numbers = true)]

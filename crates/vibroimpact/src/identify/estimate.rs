@@ -17,6 +17,8 @@ use super::work::{FURTHEST, Work};
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene};
 
+/// Most starting points of the search.
+pub const MOST_STARTS: usize = 1000;
 /// Most free fields.
 const MOST_FREE: usize = 12;
 /// The two intervals count as different if their ends differ by more than this share of the half-width.
@@ -99,7 +101,7 @@ fn require(data: &Data, free: &[Free], request: &Request) -> Result<(), InvalidI
     if !(0.5..=0.999).contains(&request.level) {
         return fault("--level", number(request.level), "a probability from 0.5 to 0.999");
     }
-    if !(1..=1000).contains(&request.starts) {
+    if !(1..=MOST_STARTS).contains(&request.starts) {
         return fault("--starts", request.starts.to_string(), "a number of starting points from 1 to 1000");
     }
     let values: usize = data.rows.iter().map(|row| row.measured.len()).sum();

@@ -72,7 +72,7 @@ mod text;
 mod work;
 
 pub use data::Data;
-pub use estimate::{Request, identify};
+pub use estimate::{MOST_STARTS, Request, identify};
 pub use free::Free;
 pub use gauge::ForceRecord;
 #[cfg(feature = "files")]

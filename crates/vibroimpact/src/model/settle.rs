@@ -32,6 +32,7 @@ use super::left_out::{
     Change, at_the_end, by_changes, energy_of_remainder, jumps, restitution_per_impulse, still_growing, too_short,
     with_one_remainder_mode, with_softer_remainder,
 };
+use super::other_modes::solve;
 use super::pose::{Pose, Source};
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
@@ -106,7 +107,7 @@ impl Rung {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
         let (striker, law) = (pose.striker, pose.law);
         let impact = Impact { structure, remainder_modes, striker, law, start: None, settings };
-        let (solution, recording) = solve(pose, &impact, cost)?;
+        let (solution, recording) = solve(&impact, pose.kept, cost)?;
         let Impact { structure, .. } = &impact;
         let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
         let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
@@ -120,7 +121,7 @@ impl Rung {
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
         let per_impulse = restitution_per_impulse(&self.impact);
         let mut changed = |other: Impact| {
-            let (other, _) = solve(pose, &other, cost)?;
+            let (other, _) = solve(&other, pose.kept, cost)?;
             Ok::<_, InvalidInput>(Change::between(&other, &self.solution, per_impulse).size())
         };
         let on = |structure: Structure| Impact { structure, ..self.impact.clone() };
@@ -149,12 +150,6 @@ impl Rung {
     fn takes_too_many_steps(&self) -> bool {
         matches!(self.solution.outcome, Outcome::Stopped(StopReason::Steps))
     }
-}
-
-fn solve(pose: &mut Pose, impact: &Impact, cost: &mut Cost) -> Result<(Solution, Option<Recording>), InvalidInput> {
-    let solved = impact.solve_with(pose.kept)?;
-    cost.add(&solved.0.counts, impact.structure.modes.len());
-    Ok(solved)
 }
 
 /// The numbers of modes tried so far.

@@ -95,9 +95,11 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
             None => compare(scene, kept, &impact, cost)?,
         };
         let left_out = match compared {
-            Comparison::Fewer(tail) => match tail.left_out(&impact, &solution) {
+            Comparison::Fewer(tail, counts) => match tail.left_out(&impact, &solution) {
                 Some(left_out) => Ok(left_out),
-                None => compare_with_more(scene, kept, &impact, cost)?.map(|more| more.left_out(&impact, &solution)),
+                None => {
+                    compare_with_more(scene, kept, &impact, counts, cost)?.map(|more| more.left_out(&impact, &solution))
+                }
             },
             Comparison::More(compared) => compared.map(|more| more.left_out(&impact, &solution)),
         };
@@ -177,27 +179,14 @@ impl Compared {
 
 /// Other impacts that show the effect of the truncated modes.
 enum Comparison {
-    /// With fewer modes, if the truncated ones respond as a spring.
-    Fewer(StaticTail),
+    /// With fewer modes, if the truncated ones respond as a spring; and the numbers of modes of the comparison with more.
+    Fewer(StaticTail, [usize; 3]),
     /// With more modes, or why that is not known.
     More(Result<Compared, String>),
 }
 
 /// Solves the impact with other modes.
 fn compare(scene: &Scene, kept: &mut Kept, impact: &Impact, cost: &mut Cost) -> Result<Comparison, InvalidInput> {
-    Ok(match StaticTail::of(scene, impact, kept, cost)? {
-        Some(tail) => Comparison::Fewer(tail),
-        None => Comparison::More(compare_with_more(scene, kept, impact, cost)?),
-    })
-}
-
-/// Solves the impact with more modes; the inner `Err` states why the effect of the truncated modes is not known.
-fn compare_with_more(
-    scene: &Scene,
-    kept: &mut Kept,
-    impact: &Impact,
-    cost: &mut Cost,
-) -> Result<Result<Compared, String>, InvalidInput> {
     let (count, most) = match &scene.structure {
         Structure::Beam(_) => (impact.kept_modes(), usize::MAX),
         computed if computed.is_computed() => {
@@ -208,12 +197,30 @@ fn compare_with_more(
         Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
             (impact.kept_modes(), listed.omega_rad_s.len())
         }
-        _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
+        _ => {
+            let why = "the static compliance of the structure is not stated";
+            return Ok(Comparison::More(Err(why.to_owned())));
+        }
     };
     let fewest = if matches!(scene.structure, Structure::DroppedRod(_)) { FEW } else { 1 };
     let affordable = RICHER * count.max(fewest);
     let needed = if moves_before(scene) { affordable } else { needed(scene, LOOSE, kept, cost)?.unwrap_or(count) };
-    let more = needed.clamp(count, affordable).min(most);
+    let counts = [count, needed.clamp(count, affordable).min(most), most];
+    Ok(match StaticTail::of(scene, impact, needed, kept, cost)? {
+        Some(tail) => Comparison::Fewer(tail, counts),
+        None => Comparison::More(compare_with_more(scene, kept, impact, counts, cost)?),
+    })
+}
+
+/// Solves the impact with `more` modes in place of the stated `count`, of the `most` that there are; the inner `Err` states why the
+/// effect of the truncated modes is not known.
+fn compare_with_more(
+    scene: &Scene,
+    kept: &mut Kept,
+    impact: &Impact,
+    [count, more, most]: [usize; 3],
+    cost: &mut Cost,
+) -> Result<Result<Compared, String>, InvalidInput> {
     match compare_with(scene, kept, impact, [count, more, most], cost)? {
         // with a motion before the impact, a comparison with as many modes shows nothing
         Err(_) if more > count && !moves_before(scene) => compare_with(scene, kept, impact, [count, count, most], cost),
@@ -221,7 +228,7 @@ fn compare_with_more(
     }
 }
 
-/// As [`compare_with_more`], with `more` modes in place of the stated `count`, of the `most` that there are.
+/// As [`compare_with_more`], with no other number of modes if that stops.
 fn compare_with(
     scene: &Scene,
     kept: &mut Kept,
@@ -240,7 +247,7 @@ fn compare_with(
             return Ok((Other::Itself, complete(impact)));
         }
         let other = Impact { settings, ..with_modes(scene, count, modes, kept)? };
-        let solution = solve(&other, kept, cost)?;
+        let (solution, _) = solve(&other, kept, cost)?;
         let energy = energy_of_remainder(&other, &solution);
         Ok((Other::Solved(solution, energy), complete(&other)))
     };
@@ -268,7 +275,7 @@ fn compare_with(
     let softer = if uncertain_m_n > 0.0 {
         let other = with_modes(scene, count, more, kept)?;
         let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
-        let solution = solve(&Impact { structure, settings, ..other }, kept, cost)?;
+        let (solution, _) = solve(&Impact { structure, settings, ..other }, kept, cost)?;
         if let Some(reason) = solution.outcome.stopped_by() {
             return Ok(Err(not_compared(more, reason)));
         }

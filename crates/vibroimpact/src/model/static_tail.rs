@@ -17,8 +17,8 @@
 //! ```
 //!
 //! Where the two estimates do not agree, the first one includes the flights between contacts (`left_out.rs`). If the second is much
-//! larger than the first, `n` modes are too few (a guess is behind their number), and the impact is compared with more modes. So
-//! it is for forces that jump at first touch, to which no mode responds as a spring, and on strings, whose frequencies grow as `N` only.
+//! larger than the first, `n` modes are too few, and the impact is compared with more modes. So are impacts by a force that jumps at
+//! first touch, to which no mode responds as a spring, and impacts on strings, whose frequencies grow as `N` only.
 
 use vibroimpact_sim::modal::{Settings, Solution, Structure};
 
@@ -28,8 +28,8 @@ use super::{Cost, Kept};
 use crate::impact::Impact;
 use crate::scene::{self, InvalidInput, Scene, compliance};
 
-/// Tolerances for which a number of modes is expected: one that excludes most scenes at once, and that of the impacts with few modes.
-const EXPECTED: [f64; 2] = [3e-3, 1e-5];
+/// Tolerance of the expected number of modes.
+const EXPECTED: f64 = 1e-5;
 /// Factor of the expected number, and least share of the stated number.
 const RICHER: usize = 2;
 const LEAST: usize = 5;
@@ -51,10 +51,12 @@ pub(super) struct StaticTail {
 }
 
 impl StaticTail {
-    /// For an impact with stated modes; `None` if the truncated modes may respond otherwise than as a spring.
+    /// For an impact with stated modes, of which a loose tolerance needs this many; `None` if the truncated modes may respond
+    /// otherwise than as a spring.
     pub fn of(
         scene: &Scene,
         impact: &Impact,
+        least: usize,
         kept: &mut Kept,
         cost: &mut Cost,
     ) -> Result<Option<StaticTail>, InvalidInput> {
@@ -63,19 +65,20 @@ impl StaticTail {
             return Ok(None);
         }
         let count = impact.kept_modes();
-        let mut modes = 0;
-        for tolerance in EXPECTED {
-            modes = match needed(scene, tolerance, kept, cost)? {
-                Some(expected) if FAR * RICHER * expected <= count => (RICHER * expected).max(count.div_ceil(LEAST)),
-                _ => return Ok(None),
-            };
+        let is_far = |modes: usize| FAR * RICHER * modes <= count;
+        if !is_far(least) {
+            return Ok(None);
         }
+        let Some(expected) = needed(scene, EXPECTED, kept, cost)?.filter(|modes| is_far(*modes)) else {
+            return Ok(None);
+        };
+        let modes = (RICHER * expected).max(count.div_ceil(LEAST));
         let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
         let few = Impact { settings, ..with_modes(scene, count, modes, kept)? };
         let truncated_m_n = scene.structure.static_compliance_m_n(scene.place())? - compliance(&impact.structure.modes);
         let structure = without_tail(&few.structure, few.remainder_modes, truncated_m_n);
-        let whole = solve(&few, kept, cost)?;
-        let without = solve(&Impact { structure, ..few }, kept, cost)?;
+        let (whole, _) = solve(&few, kept, cost)?;
+        let (without, _) = solve(&Impact { structure, ..few }, kept, cost)?;
         let stopped = [&whole, &without].iter().any(|solution| solution.outcome.stopped_by().is_some());
         Ok((!stopped).then_some(StaticTail { whole, without }))
     }
@@ -122,7 +125,7 @@ mod tests {
         }
         let scene = Scene::from_value(&scene).unwrap();
         let impact = scene.impact().unwrap();
-        let tail = StaticTail::of(&scene, &impact, &mut Kept::default(), &mut Cost::default()).unwrap();
+        let tail = StaticTail::of(&scene, &impact, 10, &mut Kept::default(), &mut Cost::default()).unwrap();
         (impact, tail)
     }
 

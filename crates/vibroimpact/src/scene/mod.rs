@@ -39,7 +39,7 @@ mod beam;
 mod beam_theory;
 mod choice;
 mod contact;
-mod damping;
+pub(crate) mod damping;
 mod definition;
 mod dropped_rod;
 mod error;

@@ -124,7 +124,7 @@ impl Plate {
 
     /// The first `count` modes, with shapes at any location.
     pub(super) fn modes(&self, count: usize) -> Result<beam_modes::PlateModes, InvalidInput> {
-        require_damping(self.damping_ratio)?;
+        require_damping(self.damping_ratio).map_err(|fault| fault.within("structure"))?;
         let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
         plate.modes(count).map_err(in_structure)
     }

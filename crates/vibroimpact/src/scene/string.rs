@@ -43,7 +43,7 @@ impl TautString {
 
     /// The first `count` modes at a location.
     pub(super) fn modes(&self, location_m: f64, count: usize) -> Result<Vec<Mode>, InvalidInput> {
-        require_damping(self.damping_ratio)?;
+        require_damping(self.damping_ratio).map_err(|fault| fault.within("structure"))?;
         let modes = self.to_taut_string().modes(count).map_err(in_structure)?;
         let seen = modes.seen_from(location_m).map_err(in_structure)?;
         Ok(Structure::from_modes(seen, self.damping_ratio).modes)
