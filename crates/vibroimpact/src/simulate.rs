@@ -64,13 +64,16 @@ impl Scene {
             return Ok(Simulation::Infinite { scale, solution });
         }
         let kept = &mut Kept::alone();
-        let choice = self.choose_and_judge(kept)?;
-        let impact = match choice.impact {
-            Some(impact) => impact,
-            None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
-            None => return Ok(Simulation::Net(choice.answer)),
-        };
-        let (solution, history) = impact.record_with(kept)?;
+        let (choice, recorded) = self.choose_and(kept, |choice, kept| {
+            let impact = match &choice.impact {
+                Some(impact) => impact.clone(),
+                None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
+                None => return Ok(None),
+            };
+            let recorded = impact.record_with(kept)?;
+            Ok(Some((impact, recorded)))
+        })?;
+        let Some((impact, (solution, history))) = recorded else { return Ok(Simulation::Net(choice.answer)) };
         let rod = match &self.structure {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,

@@ -1,5 +1,7 @@
 //! The choice of the model for a scene.
 
+use vibroimpact_sim::both;
+
 use super::choice::{Choice, Tried};
 use super::pose::Pose;
 use super::theory::Found;
@@ -41,16 +43,33 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn choose(&self) -> Result<Choice, InvalidInput> {
-        self.choose_and_judge(&mut Kept::default())
+        Ok(self.choose_and(&mut Kept::default(), |_, _| Ok(()))?.0)
     }
 
-    /// The same, with cached data.
-    pub(crate) fn choose_and_judge(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
+    /// The same with cached data, and what `go_on` makes of the choice before the effect of the theory of bending is known.
+    pub(crate) fn choose_and<T>(
+        &self,
+        kept: &mut Kept,
+        go_on: impl FnOnce(&Choice, &mut Kept) -> Result<T, InvalidInput>,
+    ) -> Result<(Choice, T), InvalidInput> {
         let mut found = Found::new(kept.is_alone());
-        let choice = self.choose_with(&mut found, kept)?;
+        let mut cost = Cost::default();
+        let open = self.with_theory(&mut found, &mut cost)?;
+        if let (Some((scene, _)), true) = (&open, kept.is_alone()) {
+            kept.modes = found.modes_of(scene);
+        }
+        let answered = || {
+            let choice = self.choose_by(open, kept, cost)?;
+            let more = go_on(&choice, kept)?;
+            Ok((choice, more))
+        };
+        let beside = found.goes_on();
+        let (others, answered) = both(beside, || if beside { found.others(self) } else { Ok(Vec::new()) }, answered);
+        let (choice, more) = answered?;
         let mut cost = choice.answer.cost;
+        found.add(others?, &mut cost);
         let answer = self.judge_theory(choice.answer, &mut found, &mut cost)?;
-        Ok(Choice { answer: Answer { cost, ..answer }, ..choice })
+        Ok((Choice { answer: Answer { cost, ..answer }, ..choice }, more))
     }
 
     /// As [`Scene::answer`], with cached data of earlier scenes: the same answer to the last bit in less time. The uncertainty of
@@ -59,15 +78,21 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn answer_with(&self, kept: &mut Kept) -> Result<Answer, InvalidInput> {
-        Ok(self.choose_with(&mut Found::default(), kept)?.answer)
+        let mut cost = Cost::default();
+        let open = self.with_theory(&mut Found::default(), &mut cost)?;
+        Ok(self.choose_by(open, kept, cost)?.answer)
     }
 
-    fn choose_with(&self, found: &mut Found, kept: &mut Kept) -> Result<Choice, InvalidInput> {
+    /// The choice, with this theory of bending if it was open, and with this cost of choosing it.
+    fn choose_by(
+        &self,
+        open: Option<(Scene, String)>,
+        kept: &mut Kept,
+        mut cost: Cost,
+    ) -> Result<Choice, InvalidInput> {
         if self.is_infinite() {
             return infinite::of_infinite_structure(self);
         }
-        let mut cost = Cost::default();
-        let open = self.with_theory(found, &mut cost)?;
         let scene = open.as_ref().map_or(self, |(scene, _)| scene);
         let mut choice = match (scene.model, modal_only(scene)) {
             (Model::Auto | Model::Modal, Some(_)) => stated::stated(scene, kept, &mut cost)?,

@@ -8,50 +8,50 @@
 //! u = max_v |e_v - e|.
 //! ```
 //!
-//! All four have remainder modes, and twice the expected number of modes for the tolerance or the number of the answer. Where a number
-//! is stated, they have the closest number to it that is between once and twice the expected one, but at most twice the stated one.
-//! They are solved once at a loose tolerance, so that this costs no more than a few times the impact
-//! itself. If a scene does not state the theory, the cheaper one is used if the two differ by less than half the tolerance.
+//! All four have remainder modes, and twice the expected number of modes for the tolerance. Where a number is stated, they have the
+//! closest number to it that is between once and twice the expected one, but at most twice the stated one. They are solved once at a
+//! loose tolerance, so that this costs no more than a few times the impact itself. If a scene does not state the theory, the cheaper
+//! one is used if the two differ by less than half the tolerance. None of this depends on the answer, so that the last two impacts are
+//! solved beside it.
 
 use vibroimpact_sim::both;
 use vibroimpact_sim::modal::Settings;
 
-use super::other_modes::needed;
+use super::other_modes::needed as needed_modes;
 use super::uncertainty::Uncertainty;
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
-use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure, chooses_modes};
+use crate::scene::{Beam, BeamTheory, InvalidInput, KnownModes, Scene, Structure, chooses_modes};
 use crate::text::small;
 
-/// Tolerance that determines the number of modes, if the requested one is tighter.
+/// Range of the tolerance that determines the number of modes.
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
-/// Tolerance of the solver.
-const SOLVER: f64 = 1e-6;
+/// Tolerance of the solver as a share of that tolerance.
+const SOLVER_SHARE: f64 = 0.1;
 /// Factor of the expected number of modes, and largest factor of the stated number.
 const RICHER: usize = 2;
 /// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;
 
-/// What was found for the beams of one scene, so that the choice of the theory and its uncertainty do not solve an impact twice.
+/// The impacts on the beams of one scene that are solved so far, so that the choice of the theory and its uncertainty do not solve an
+/// impact twice.
 #[derive(Default)]
 pub(super) struct Found {
-    /// Expected number of modes by each theory; a slightly different shear coefficient needs as many.
-    needed: Vec<(BeamTheory, Option<usize>)>,
-    /// Restitutions, with the number of modes.
-    restitutions: Vec<(Beam, usize, Option<f64>)>,
+    /// In the order of [`beams`].
+    solved: Vec<Solved>,
     /// Whether two impacts are solved at the same time.
     concurrent: bool,
 }
 
 /// The restitution on one beam.
-struct Solved {
-    theory: BeamTheory,
+pub(super) struct Solved {
+    /// Expected number of modes.
     needed: Option<usize>,
-    beam: Beam,
-    modes: usize,
     restitution: Option<f64>,
     cost: Cost,
+    /// The modes of this beam that were computed.
+    modes: KnownModes,
 }
 
 /// Restitutions of one impact by both theories.
@@ -63,51 +63,6 @@ struct Theories {
 }
 
 impl Theories {
-    /// For a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. The inner
-    /// `Err` states why it is not known.
-    fn of(
-        scene: &Scene,
-        answer: Option<&Answer>,
-        found: &mut Found,
-        cost: &mut Cost,
-    ) -> Result<Result<Theories, String>, InvalidInput> {
-        let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is not a beam".to_owned())) };
-        let in_structure = |fault: InvalidInput| fault.within("structure");
-        let timoshenko = Beam { theory: Some(BeamTheory::Timoshenko), ..beam.clone() };
-        let mut beams = vec![timoshenko.clone()];
-        beams.extend(timoshenko.theory_variants().map_err(in_structure)?.into_iter().map(|(_, beam)| beam));
-        beams.truncate(if answer.is_some() { 4 } else { 2 });
-        let least = answer.map_or(0, |answer| answer.modes);
-        let mut restitutions = Vec::new();
-        for pair in beams.chunks(2) {
-            let known = |beam: &Beam| found.known(scene, beam, least);
-            let concurrent = found.concurrent && pair.iter().all(|beam| known(beam).is_none());
-            let solve = |beam: &Beam| match known(beam) {
-                Some(restitution) => Ok((restitution, None)),
-                None => found.solve(scene, beam, least).map(|solved| (solved.restitution, Some(solved))),
-            };
-            let second = || pair.get(1).map(solve);
-            let (second, first) = both(concurrent, second, || solve(&pair[0]));
-            for solved in std::iter::once(first).chain(second) {
-                let (restitution, solved) = solved?;
-                if let Some(solved) = solved {
-                    *cost += solved.cost;
-                    found.add(solved);
-                }
-                restitutions.push(restitution);
-            }
-        }
-        let Some(restitutions) = restitutions.into_iter().collect::<Option<Vec<f64>>>() else {
-            return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned()));
-        };
-        Ok(match restitutions[..] {
-            [timoshenko, euler_bernoulli, ref others @ ..] => {
-                Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
-            }
-            _ => Err("there is no other theory to be compared with".to_owned()),
-        })
-    }
-
     fn difference(&self) -> f64 {
         (self.euler_bernoulli - self.timoshenko).abs()
     }
@@ -125,68 +80,110 @@ impl Found {
         Found { concurrent, ..Found::default() }
     }
 
-    /// The restitution of the scene on this beam, if it is known.
-    fn known(&self, scene: &Scene, beam: &Beam, least: usize) -> Option<Option<f64>> {
-        let theory = theory_of(&on(scene, beam));
-        let (_, needed) = self.needed.iter().find(|(known, _)| *known == theory)?;
-        let count = count(scene, *needed, least);
-        let known = self.restitutions.iter().find(|(known, modes, _)| known == beam && *modes == count);
-        known.map(|(.., restitution)| *restitution)
+    /// Whether the theory was chosen by impacts with a rebound, so that its uncertainty will be wanted, and can be estimated beside the
+    /// answer.
+    pub fn goes_on(&self) -> bool {
+        self.concurrent && !self.solved.is_empty() && self.solved.iter().all(|solved| solved.restitution.is_some())
     }
 
-    /// Solves the scene on this beam with the expected number of modes for the tolerance, with a lower limit, and remainder modes.
-    fn solve(&self, scene: &Scene, beam: &Beam, least: usize) -> Result<Solved, InvalidInput> {
-        // the modes of this beam must not replace those that are cached for the next scene
-        let (kept, mut cost) = (&mut Kept::default(), Cost::default());
-        let scene = on(scene, beam);
-        let theory = theory_of(&scene);
-        let needed = match self.needed.iter().find(|(known, _)| *known == theory) {
-            Some((_, needed)) => *needed,
-            None => {
-                let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
-                needed(&scene, tolerance, kept, &mut cost)?
-            }
-        };
-        let modes = count(&scene, needed, least);
-        let scene = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene };
-        let impact = scene.impact_of(Some(modes), kept)?;
-        let Impact { structure, striker, law, start, settings, .. } = &impact;
-        let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..*settings };
-        let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
-        cost.add(&solution.counts, structure.modes.len());
-        Ok(Solved { theory, needed, beam: beam.clone(), modes, restitution: solution.restitution, cost })
+    /// The impacts that are not solved yet.
+    pub fn others(&self, scene: &Scene) -> Result<Vec<Solved>, InvalidInput> {
+        self.up_to(scene, &beams(scene)?)
     }
 
-    fn add(&mut self, Solved { theory, needed, beam, modes, restitution, .. }: Solved) {
-        if self.needed.iter().all(|(known, _)| *known != theory) {
-            self.needed.push((theory, needed));
+    /// The same, of these beams.
+    fn up_to(&self, scene: &Scene, beams: &[Beam]) -> Result<Vec<Solved>, InvalidInput> {
+        let mut others: Vec<Solved> = Vec::new();
+        for pair in beams[self.solved.len()..].chunks(2) {
+            // the pair after the first differs from its first beam by the shear coefficient alone, and needs as many modes
+            let needed = self.solved.first().or(others.first()).map(|solved| solved.needed);
+            let solve = |beam: &Beam| solve(scene, beam, needed);
+            let (second, first) = both(self.concurrent, || pair.get(1).map(solve), || solve(&pair[0]));
+            others.push(first?);
+            others.extend(second.transpose()?);
         }
-        self.restitutions.push((beam, modes, restitution));
+        Ok(others)
+    }
+
+    /// Adds impacts, and their cost.
+    pub fn add(&mut self, others: Vec<Solved>, cost: &mut Cost) {
+        others.iter().for_each(|solved| *cost += solved.cost);
+        self.solved.extend(others);
+    }
+
+    /// The restitutions by the first two theories, or by all; the inner `Err` states why they are not known.
+    fn theories(
+        &mut self,
+        scene: &Scene,
+        all: bool,
+        cost: &mut Cost,
+    ) -> Result<Result<Theories, String>, InvalidInput> {
+        let beams = beams(scene)?;
+        let wanted = if all { beams.len() } else { beams.len().min(2) };
+        if self.solved.len() < wanted {
+            let others = self.up_to(scene, &beams[..wanted])?;
+            self.add(others, cost);
+        }
+        let Some(restitutions) = self.solved.iter().map(|solved| solved.restitution).collect::<Option<Vec<f64>>>()
+        else {
+            return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned()));
+        };
+        Ok(match restitutions[..] {
+            [timoshenko, euler_bernoulli, ref others @ ..] => {
+                Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
+            }
+            _ => Err("there is no other theory to be compared with".to_owned()),
+        })
+    }
+
+    /// The modes that were computed for the beam of this scene by its theory.
+    pub fn modes_of(&mut self, scene: &Scene) -> KnownModes {
+        let place = usize::from(scene.structure.bending_theory() == Some(BeamTheory::EulerBernoulli));
+        self.solved.get_mut(place).map_or_else(KnownModes::default, |solved| std::mem::take(&mut solved.modes))
     }
 }
 
-/// The scene on this beam.
-fn on(scene: &Scene, beam: &Beam) -> Scene {
-    Scene { structure: beam.clone().into(), ..scene.clone() }
+/// The beam of a scene by Timoshenko's theory, by Euler-Bernoulli's, and by Timoshenko's with other shear coefficients; none if it
+/// cannot be solved by both.
+fn beams(scene: &Scene) -> Result<Vec<Beam>, InvalidInput> {
+    let Structure::Beam(beam) = &scene.structure else { return Ok(Vec::new()) };
+    let variants = |beam: &Beam| beam.theory_variants().map_err(|fault| fault.within("structure"));
+    if variants(beam)?.is_empty() {
+        return Ok(Vec::new());
+    }
+    let timoshenko = Beam { theory: Some(BeamTheory::Timoshenko), ..beam.clone() };
+    let variants = variants(&timoshenko)?;
+    let beams = std::iter::once(timoshenko).chain(variants.into_iter().map(|(_, beam)| beam));
+    Ok(beams.collect())
 }
 
-fn theory_of(scene: &Scene) -> BeamTheory {
-    scene.structure.bending_theory().unwrap_or(BeamTheory::Auto)
+/// Solves the scene on this beam with the expected number of modes for the tolerance, if that is known already, and remainder modes.
+fn solve(scene: &Scene, beam: &Beam, needed: Option<Option<usize>>) -> Result<Solved, InvalidInput> {
+    // the modes of this beam must not replace those that are cached for the next scene
+    let (mut kept, mut cost) = (Kept::default(), Cost::default());
+    let scene = Scene { structure: beam.clone().into(), ..scene.clone() };
+    let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
+    let needed = match needed {
+        Some(needed) => needed,
+        None => needed_modes(&scene, tolerance, &mut kept, &mut cost)?,
+    };
+    let modes = count(&scene, needed);
+    let scene = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene };
+    let impact = scene.impact_of(Some(modes), &mut kept)?;
+    let Impact { structure, striker, law, start, settings, .. } = &impact;
+    let settings = Settings { tolerance: SOLVER_SHARE * tolerance, estimate_uncertainty: false, ..*settings };
+    let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
+    cost.add(&solution.counts, structure.modes.len());
+    Ok(Solved { needed, restitution: solution.restitution, cost, modes: kept.modes })
 }
 
 /// The number of modes with which the theories are compared.
-fn count(scene: &Scene, needed: Option<usize>, least: usize) -> usize {
+fn count(scene: &Scene, needed: Option<usize>) -> usize {
     match (needed, scene.modes.count()) {
         (Some(needed), Some(stated)) => stated.clamp(needed, RICHER * needed).min(RICHER * stated.max(1)),
-        (Some(needed), None) => (RICHER * needed).max(least),
+        (Some(needed), None) => RICHER * needed,
         (None, stated) => stated.unwrap_or_default(),
     }
-}
-
-/// Whether the beam of a scene can be solved by both theories.
-fn has_both(scene: &Scene) -> Result<bool, InvalidInput> {
-    let Structure::Beam(beam) = &scene.structure else { return Ok(false) };
-    Ok(!beam.theory_variants().map_err(|fault| fault.within("structure"))?.is_empty())
 }
 
 impl Scene {
@@ -201,11 +198,11 @@ impl Scene {
         let asked = self.model == Model::Auto || self.model == Model::Modal;
         // without an approach nothing depends on the theory
         let approaches = self.striker.speed_m_s > 0.0;
-        if !(open && asked && approaches && chooses_modes(self) && has_both(self)?) {
+        if !(open && asked && approaches && chooses_modes(self) && !beams(self)?.is_empty()) {
             return Ok(None);
         }
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        let (theory, why) = match Theories::of(self, None, found, cost)? {
+        let (theory, why) = match found.theories(self, false, cost)? {
             Ok(theories) if theories.difference() <= SHARE * tolerance => {
                 let difference = small(theories.difference());
                 let why =
@@ -242,13 +239,13 @@ impl Scene {
         found: &mut Found,
         cost: &mut Cost,
     ) -> Result<Answer, InvalidInput> {
-        let (Some(theory), true) = (answer.theory, answer.restitution.is_some() && has_both(self)?) else {
+        let (Some(theory), Some(_), false) = (answer.theory, answer.restitution, beams(self)?.is_empty()) else {
             return Ok(answer);
         };
         const PART: &str = "beam theory: ";
         let mut not_known: Vec<String> =
             answer.not_known.iter().filter(|why| !why.starts_with(PART)).cloned().collect();
-        let beam_theory = match Theories::of(self, Some(&answer), found, cost)? {
+        let beam_theory = match found.theories(self, true, cost)? {
             Ok(theories) => Some(theories.around(theory).min(1.0)),
             Err(why) => {
                 not_known.push(format!("{PART}{why}"));
