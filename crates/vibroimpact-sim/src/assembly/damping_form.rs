@@ -29,8 +29,8 @@ use std::sync::LazyLock;
 
 /// For a mode that turns by at most this much (rad) the coarser rule is sufficient.
 const GENTLE: f64 = 1.0;
-static COARSE: LazyLock<Series<12>> = LazyLock::new(Series::new);
-static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
+static COARSE: LazyLock<Series<12>> = LazyLock::new(|| Series::new(GENTLE));
+static FINE: LazyLock<Series<20>> = LazyLock::new(|| Series::new(SLOW));
 
 /// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
 /// upper half is left at zero.
@@ -112,23 +112,36 @@ struct Series<const M: usize> {
 }
 
 impl<const M: usize> Series<M> {
-    fn new() -> Series<M> {
+    /// For modes that turn by at most `most` (rad).
+    fn new(most: f64) -> Series<M> {
+        let terms = BASIS.terms::<SERIES>(most, 2);
         let rule = rule(const { NonZeroUsize::new(M).unwrap() });
-        let mut powers: [_; RATES] = array::from_fn(|_| vec![[0.0; M]; SERIES]);
-        for (q, &(x, _)) in rule.iter().enumerate() {
-            let [by_rate, by_force @ ..] = &mut powers;
-            let mut power = 1.0;
-            for (p, at) in by_rate.iter_mut().enumerate() {
-                at[q] = power;
-                power *= x / (p + 1) as f64;
+        let places: [f64; M] = array::from_fn(|q| rule[q].0);
+        let mut powers: [_; RATES] = array::from_fn(|_| vec![[0.0; M]; terms]);
+        let [by_rate, by_force @ ..] = &mut powers;
+        let mut power = [1.0; M];
+        for (p, at) in by_rate.iter_mut().enumerate() {
+            *at = power;
+            for q in 0..M {
+                power[q] *= places[q] / (p + 1) as f64;
             }
-            for &(y, w) in &BASIS.fine {
-                let mut kernel = w * x;
-                for p in 0..SERIES {
-                    for (row, value) in by_force.iter_mut().zip(legendre(x * y)) {
-                        row[p][q] += kernel * value;
+        }
+        for (y, w) in &BASIS.fine {
+            let mut values = [[0.0; M]; Q];
+            for q in 0..M {
+                for (row, value) in values.iter_mut().zip(legendre(places[q] * y)) {
+                    row[q] = value;
+                }
+            }
+            let mut kernel = places.map(|x| w * x);
+            for p in 0..terms {
+                for (row, values) in by_force.iter_mut().zip(&values) {
+                    for q in 0..M {
+                        row[p][q] += kernel[q] * values[q];
                     }
-                    kernel *= x * (1.0 - y) / (p + 1) as f64;
+                }
+                for q in 0..M {
+                    kernel[q] *= places[q] * (1.0 - y) / (p + 1) as f64;
                 }
             }
         }

@@ -20,6 +20,12 @@ pub(super) struct Panel {
     pub force: Legendre,
 }
 
+impl Panel {
+    fn end_s(&self) -> f64 {
+        self.start_s + self.length_s
+    }
+}
+
 impl Pulse {
     /// The Fourier transform `int F e^{i omega (t - t0)} dt`, with `t0` the time from which the force is taken: real and imaginary
     /// part (N s), in closed form.
@@ -39,17 +45,17 @@ impl Pulse {
     /// ```
     pub fn transform_n_s(&self, omega_rad_s: f64) -> [f64; 2] {
         let mut sum = Complex64::ZERO;
-        let mut last: Option<(f64, Nodal)> = None;
-        for panel in &self.panels {
-            let length_s = panel.length_s;
-            // most panels are as long as the one before
-            let bessel = match last {
-                Some((known_s, bessel)) if known_s == length_s => bessel,
-                _ => spherical_bessel(0.5 * omega_rad_s * length_s),
-            };
-            last = Some((length_s, bessel));
-            let middle_s = panel.start_s - self.from_s + 0.5 * length_s;
-            sum += length_s * Complex64::cis(omega_rad_s * middle_s) * centred_mean(&bessel, &panel.force);
+        // most panels follow one of the same length
+        for run in self.panels.chunk_by(|one, next| next.length_s == one.length_s && next.start_s == one.end_s()) {
+            let [first, ..] = run else { continue };
+            let bessel = spherical_bessel(0.5 * omega_rad_s * first.length_s);
+            let middle_s = first.start_s - self.from_s + 0.5 * first.length_s;
+            let mut wave = first.length_s * Complex64::cis(omega_rad_s * middle_s);
+            let further = if run.len() > 1 { Complex64::cis(omega_rad_s * first.length_s) } else { Complex64::ONE };
+            for panel in run {
+                sum += wave * centred_mean(&bessel, &panel.force);
+                wave *= further;
+            }
         }
         [sum.re, sum.im]
     }

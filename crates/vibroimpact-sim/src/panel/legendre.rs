@@ -209,13 +209,13 @@ impl Basis {
         let mut power_end = moments(1.0);
         power_end.truncate(TAYLOR);
 
+        let about: Vec<_> = fine.iter().map(|&(x, w)| (0.5 - x, w, legendre(x))).collect();
         let mut about_middle = vec![[[0.0; Q / 2]; 3]; HALF_SERIES];
         for (p, [powers, from_middle, integrals]) in about_middle.iter_mut().enumerate() {
             for m in 0..Q / 2 {
                 powers[m] = (nodes[Q / 2 + m] - 0.5).powi(p as i32);
                 from_middle[m] = powers[m] * (nodes[Q / 2 + m] - 0.5) / (p + 1) as f64;
-                integrals[m] =
-                    fine.iter().map(|(x, w)| w * (0.5 - x).powi(p as i32) * legendre(*x)[2 * m + p % 2]).sum();
+                integrals[m] = about.iter().map(|(x, w, values)| w * x.powi(p as i32) * values[2 * m + p % 2]).sum();
             }
         }
         // the response to a unit velocity goes as angle^(p-1) / p!
