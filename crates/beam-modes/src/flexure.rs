@@ -26,6 +26,8 @@ pub(crate) struct Flexure {
     phase: f64,
     /// Factors of the state from span `i` to span `i + 1`.
     steps: Vec<State>,
+    /// There is a foundation somewhere: the ratio of two spans' wave numbers depends on the frequency.
+    founded: bool,
     /// There is no shear, rotary inertia, tension or foundation anywhere.
     plain: bool,
 }
@@ -95,8 +97,9 @@ impl Flexure {
         let steps =
             (1..spans.len()).map(|i| step(&spans[i - 1], wave_numbers[i - 1], &spans[i], wave_numbers[i])).collect();
         let phase = spans.iter().zip(&wave_numbers).map(|(span, k)| span.length * k).sum();
+        let founded = spans.iter().any(|span| span.foundation != 0.0);
         let plain = spans.iter().all(Span::is_plain);
-        Self { spans, ends, nodes, wave_numbers, phase, steps, plain }
+        Self { spans, ends, nodes, wave_numbers, phase, steps, founded, plain }
     }
 
     /// The scaling wave number, from the mass or, if it is stiffer, from the foundation.
@@ -114,7 +117,7 @@ impl Flexure {
 
     /// Factors of the state from span `i - 1` to span `i`.
     fn step(&self, i: usize, q: f64) -> State {
-        if self.spans[i].foundation == 0.0 {
+        if !self.founded {
             return self.steps[i - 1];
         }
         step(&self.spans[i - 1], self.wave_number(i - 1, q), &self.spans[i], self.wave_number(i, q))
@@ -183,8 +186,7 @@ impl Flexure {
 
     /// From `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`; a common power of `q` is omitted where there is one.
     fn amplitude(&self, i: usize, q: f64) -> f64 {
-        let foundation = self.spans[i].foundation != 0.0;
-        let k = if foundation { self.wave_number(i, q) } else { self.wave_numbers[i] };
+        let k = if self.founded { self.wave_number(i, q) } else { self.wave_numbers[i] };
         1.0 / (self.spans[i].rigidity * k.powi(3)).sqrt()
     }
 

@@ -46,8 +46,11 @@
 //! 5. All this applies to every span whose four first-order equations have constant coefficients. Shear, rotary inertia, axial
 //!    force and foundation change only the two exponents of a span and the ratios of moment to displacement of its waves
 //!    (`waves.rs`); masses and springs shear the plane at their location, and a support replaces one of its columns (`node.rs`,
-//!    `plane.rs`). If a foundation is so stiff that no wave propagates in a span, the span is divided into pieces for power
-//!    series.
+//!    `plane.rs`).
+//! 6. A foundation in proportion to the mass raises the squares of all frequencies alike and changes no shape. This part of a
+//!    foundation is taken away before the search and added to its result, so that frequencies on a stiff foundation can be told
+//!    apart. Where the mass per length is smaller than elsewhere, a part remains; if it is so stiff that no wave propagates in
+//!    a span, the span is divided into pieces for power series.
 //!
 //! Shapes stay orthonormal to 1e-11 for ratios of neighbouring rigidities of 1e12 or of lengths of 1e3; see `tests/stepped.rs`.
 //! Larger contrasts than 1e12 are rejected.

@@ -15,10 +15,10 @@ pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> V
         + fixed().map(|(x, node)| node.mass[0] * x).sum::<f64>();
     let centre = first_moment / mass;
     let held =
-        places().zip(nodes).filter(|(_, n)| n.support || n.spring[0] > 0.0).map(|(x, _)| x).collect::<Vec<f64>>();
+        places().zip(nodes).filter(|(_, n)| n.support || n.spring[0] != 0.0).map(|(x, _)| x).collect::<Vec<f64>>();
     let founded = spans.iter().any(|s| s.foundation > 0.0);
     // An axial force keeps its direction, and therefore turns the beam towards it.
-    let turned = spans.iter().any(|s| s.tension != 0.0) || nodes.iter().any(|node| node.spring[1] > 0.0);
+    let turned = spans.iter().any(|s| s.tension != 0.0) || nodes.iter().any(|node| node.spring[1] != 0.0);
     let stands = |&[p, q]: &[f64; 2]| !founded && (!turned || q == 0.0) && held.iter().all(|x| p + q * x == 0.0);
     let motions = match ends {
         [Free, Free] => match held.as_slice() {

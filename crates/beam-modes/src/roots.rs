@@ -35,6 +35,16 @@ const CLOSED: f64 = 4.0 * f64::EPSILON;
 /// Fractions at which an interval is divided.
 const SPLITS: [f64; 4] = [0.487_139, 0.531_477, 0.461_893, 0.549_917];
 
+/// Where the search for roots begins, unless frequencies lie below.
+fn first_trial(problem: &impl Characteristic) -> f64 {
+    0.4137 * problem.estimate(1)
+}
+
+/// The number of natural frequencies below those for which [`elastic_roots`] searches first.
+pub(crate) fn count_below_search(problem: &impl Characteristic) -> usize {
+    problem.count_and_function(first_trial(problem)).0
+}
+
 /// The first `wanted` roots after `rigid` zero ones, in ascending order.
 pub(crate) fn elastic_roots(
     problem: &impl Characteristic,
@@ -49,7 +59,7 @@ pub(crate) fn elastic_roots(
         let (below, value) = problem.count_and_function(q);
         Trial { q, below, value }
     };
-    let mut low = trial(0.4137 * problem.estimate(1));
+    let mut low = trial(first_trial(problem));
     for _ in 0..60 {
         if low.below == rigid {
             break;

@@ -9,13 +9,50 @@ use crate::definition::{BeamSystem, is_held};
 use crate::flexure::Flexure;
 use crate::location::require_on;
 use crate::modes::{Modes, held_ends, require_count};
+use crate::node::Node;
 use crate::piece::Piece;
 use crate::rigid::{rigid_motions, rigid_shape};
-use crate::roots::elastic_roots;
+use crate::roots::{count_below_search, elastic_roots};
 use crate::shapes::shapes;
 use crate::span::{RESOLVABLE, Units};
 use crate::statics;
 use invalid_input::InvalidInput;
+
+/// Elastic modes in ascending order, dimensionless.
+#[derive(Default)]
+struct Found {
+    omega: Vec<f64>,
+    shapes: Vec<Vec<Piece>>,
+}
+
+impl Found {
+    /// Adds `wanted` modes above the first `below` ones of a chain whose foundation was reduced by `raised`.
+    fn add(&mut self, guide: &Flexure, below: usize, wanted: usize, raised: f64) -> Result<(), InvalidInput> {
+        let roots = elastic_roots(guide, below, wanted)?;
+        self.omega.extend(roots.iter().map(|q| (q * q).hypot(raised.sqrt())));
+        self.shapes.extend(shapes(guide, &roots));
+        Ok(())
+    }
+}
+
+impl Chain {
+    fn waveguide(&self) -> Flexure {
+        Flexure::new(self.spans.clone(), self.ends, self.nodes.clone())
+    }
+
+    fn assemble(self, rigid: Vec<Vec<Piece>>, elastic: Found) -> Result<Modes, InvalidInput> {
+        let Self { spans, nodes, ends, units } = self;
+        let last = spans.len() - 1;
+        let place = |i: usize| if i > last { (last, spans[last].length) } else { (i, 0.0) };
+        let heavy = nodes.iter().enumerate().filter(|(_, node)| node.mass[0] > 0.0);
+        let fixed = heavy.map(|(i, node)| (place(i).0, place(i).1, node.mass[0])).collect();
+        let supported = spans.iter().zip(&nodes).filter(|(_, node)| node.support).map(|(span, _)| span.start);
+        let held = held_ends(ends.map(is_held)).into_iter().chain(supported).collect();
+        let unit = units.bending_frequency();
+        let omega = elastic.omega.iter().map(|omega| omega * unit);
+        Ok(Modes::assemble(spans, units, rigid, omega, elastic.shapes, held)?.with_fixed(fixed))
+    }
+}
 
 impl BeamSystem {
     /// Whether there are only segments and ends.
@@ -57,27 +94,35 @@ impl BeamSystem {
         if self.is_bare() {
             return self.beam.modes(count);
         }
-        let chain = Chain::of(self)?;
+        let whole = Chain::of(self)?;
         if self.axial_force_n < 0.0 {
-            require_stable(&chain)?;
+            require_stable(&whole)?;
         }
-        let Chain { spans, nodes, ends, units } = chain;
-        require_count(count, spans.len())?;
-        let motions = rigid_motions(&spans, ends, &nodes);
-        let elastic = count.saturating_sub(motions.len());
-        let last = spans.len() - 1;
-        let place = |i: usize| if i > last { (last, spans[last].length) } else { (i, 0.0) };
-        let heavy = nodes.iter().enumerate().filter(|(_, node)| node.mass[0] > 0.0);
-        let fixed = heavy.map(|(i, node)| (place(i).0, place(i).1, node.mass[0])).collect();
-        let supported = spans.iter().zip(&nodes).filter(|(_, node)| node.support).map(|(span, _)| span.start);
-        let held = held_ends(ends.map(is_held)).into_iter().chain(supported).collect();
-        let waveguide = Flexure::new(spans.clone(), ends, nodes);
-        let roots = elastic_roots(&waveguide, motions.len(), elastic)?;
-        let unit = units.bending_frequency();
-        let omega = roots.iter().map(|q| q * q * unit);
-        let rigid: Vec<Vec<Piece>> = motions.iter().take(count).map(|motion| rigid_shape(&spans, motion)).collect();
-        let elastic = shapes(&waveguide, &roots);
-        Ok(Modes::assemble(spans, units, rigid, omega, elastic, held)?.with_fixed(fixed))
+        let (chain, raised) = Chain::on_rest_of_foundation(self)?;
+        let motions = rigid_motions(&chain.spans, chain.ends, &chain.nodes);
+        // Without the common part of the foundation, compression or attached masses may leave a beam that does not stand.
+        let may_fall = raised > 0.0 && (self.axial_force_n < 0.0 || chain.nodes.iter().any(Node::is_heavy));
+        if may_fall && count_below_search(&chain.waveguide()) > motions.len() {
+            let chain = whole.without_common_foundation().0;
+            require_count(count, chain.spans.len())?;
+            let guide = chain.waveguide();
+            let below = count_below_search(&guide);
+            let mut found = Found::default();
+            found.add(&whole.waveguide(), 0, below.min(count), 0.0)?;
+            found.add(&guide, below, count - found.shapes.len(), raised)?;
+            return chain.assemble(Vec::new(), found);
+        }
+        require_count(count, chain.spans.len())?;
+        let mut rigid: Vec<Vec<Piece>> =
+            motions.iter().take(count).map(|motion| rigid_shape(&chain.spans, motion)).collect();
+        let elastic = count - rigid.len();
+        let mut found = Found::default();
+        if raised > 0.0 {
+            // A foundation in proportion to the mass turns rigid motions into vibrations.
+            found = Found { omega: vec![raised.sqrt(); rigid.len()], shapes: std::mem::take(&mut rigid) };
+        }
+        found.add(&chain.waveguide(), motions.len(), elastic, raised)?;
+        chain.assemble(rigid, found)
     }
 
     /// Static compliance `G(x, x)`, m/N, with the deflection in shear; see [`Beam::static_compliance`].

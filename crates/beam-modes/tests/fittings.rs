@@ -1,6 +1,6 @@
 //! Attachments, supports, axial force and foundation: closed forms, multiple precision, limits, metamorphic checks.
 
-use crate::common::{ENDS, rows, segment};
+use crate::common::{ENDS, orthonormality_defect, rows, segment};
 use beam_modes::{Attachment, Beam, BeamSystem, End, InvalidInput, Modes, Segment, ShearSection, Support};
 use std::f64::consts::PI;
 
@@ -94,6 +94,56 @@ fn axial_force_and_foundation_of_a_pinned_beam() {
             .sum();
         let compliance = system.static_compliance(x).unwrap();
         assert!((compliance / sum - 1.0).abs() < 1e-10, "{force} {foundation}: {compliance} {sum}");
+    }
+}
+
+/// On a foundation so stiff that the squares of all frequencies agree to eight digits, the modes of a pinned beam are still
+/// sines, and those of a free one are a translation, a rotation and its modes without foundation.
+#[test]
+fn shapes_on_a_very_stiff_foundation() {
+    let foundation_n_m2 = 1e10;
+    for ends in [[End::Pinned; 2], [End::Free; 2]] {
+        let modes = BeamSystem { foundation_n_m2, ..unit(ends) }.modes(20).unwrap();
+        let bare = unit(ends).modes(20).unwrap();
+        assert_eq!(modes.rigid_body_count(), 0);
+        for (ours, own) in modes.omega_rad_s().iter().zip(bare.omega_rad_s()) {
+            assert!((ours / (own * own + foundation_n_m2).sqrt() - 1.0).abs() < 1e-14, "{ours} {own}");
+        }
+        for x in [0.0, 0.013, 0.3, 0.81, 1.0] {
+            for (n, (ours, own)) in modes.shapes_at(x).unwrap().iter().zip(bare.shapes_at(x).unwrap()).enumerate() {
+                let sine = 2f64.sqrt() * (PI * (n + 1) as f64 * x).sin();
+                let exact = if ends[0] == End::Pinned { sine } else { own };
+                assert!((ours - exact).abs() < 1e-11, "{ends:?} {n} at {x}: {ours} {exact}");
+            }
+        }
+    }
+}
+
+/// Where the mass per length changes, or a mass is attached, a stiff foundation lets waves decay in a part of the beam. The
+/// reversed beam is the same one, and modes are orthonormal and add up to the static compliance.
+#[test]
+fn steps_and_masses_on_a_stiff_foundation() {
+    let steps = [segment(0.3, 1.0, 1.0), segment(0.25, 0.5, 1.6), segment(0.45, 2.0, 0.7)];
+    let mass = Attachment { mass_kg: 0.2, rotary_inertia_kg_m2: 1e-5, ..at(0.4) };
+    for (left, right) in [(End::Pinned, End::Pinned), (End::Clamped, End::Free), (End::Free, End::Guided)] {
+        for (attachments, axial_force_n) in [(vec![], 0.0), (vec![mass], 0.0), (vec![mass], 300.0), (vec![mass], -30.0)]
+        {
+            let supports = vec![Support { location_m: 0.75 }];
+            let founded = BeamSystem { foundation_n_m2: 1e7, axial_force_n, ..bare(&steps, [left, right]) };
+            let system = BeamSystem { attachments, supports, ..founded };
+            let modes = system.modes(150).unwrap();
+            assert_close(modes.omega_rad_s(), &omega(&turned(&system), 150), 1e-13);
+            if system.attachments.is_empty() {
+                // the support divides the last segment
+                let along = [(0.3, 1.0, 600.0), (0.25, 1.6, 600.0), (0.2, 0.7, 600.0), (0.25, 0.7, 600.0)];
+                let defect = orthonormality_defect(&along, &modes);
+                assert!(defect < 1e-10, "{left:?} {right:?}: {defect:e}");
+            }
+            let (x, y) = (0.37, 0.41);
+            let (green, size) = (system.static_green(x, y).unwrap(), system.static_compliance(x).unwrap());
+            let error = sum_of_modes(&modes, x, y) - green;
+            assert!(error.abs() < 1e-3 * size, "{left:?} {right:?} {axial_force_n}: {error:e} of {size:e}");
+        }
     }
 }
 
