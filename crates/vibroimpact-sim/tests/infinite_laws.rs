@@ -359,6 +359,26 @@ fn a_body_that_yields_at_once_goes_on_by_its_plastic_law() {
     }
 }
 
+/// A striker on a plate that hardly gives way rebounds as from a wall. Where it yields far below the load, the little compression
+/// that is recovered has lost digits to that which stays, and the stated uncertainty covers what the rebound has lost with them.
+#[test]
+fn the_uncertainty_covers_the_rounding_of_what_is_recovered() {
+    let rigid = Receptance::new(&[Term { coefficient: 1e-18, power: 0.0 }]).unwrap();
+    let mut compared = 0;
+    for i in 0..32 {
+        let law = Thornton::new(1e11, 0.01, 1e11 * 10.0_f64.powf(-4.0 - 0.05 * f64::from(i))).unwrap();
+        let solution = solve_law(&rigid, &UNIT, &law, &Settings::default()).unwrap();
+        let expected = Law::from(law).wall_restitution(1.0, 1.0).unwrap();
+        // the softest may stop for want of digits
+        let Some(found) = solution.rebound_ratio() else { continue };
+        let error = (found - expected).abs();
+        let stated = solution.relative_uncertainty.unwrap() * (1.0 + expected);
+        assert!(error < stated && stated < 1e-4 * expected, "{i}: {error:e} {stated:e} of {expected}");
+        compared += 1;
+    }
+    assert!(compared > 20, "{compared}");
+}
+
 /// Two beams, or terms of any powers, act together: a structure whose terms are divided into parts has the same impact, and the
 /// unit of time is that at which the structure has moved as far as the striker.
 #[test]

@@ -7,6 +7,8 @@ use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 pub(super) struct Scaled<'a> {
     pub law: &'a dyn ContactLaw,
     pub scale: Scale,
+    /// The part of every compression by which the force is that of a larger one: zero, or as much as rounding.
+    pub rounding: f64,
 }
 
 /// Force and its derivatives by compression and rate.
@@ -49,7 +51,7 @@ impl Scaled<'_> {
 
     pub fn force(&self, branch: &Branch, x: f64, rate: f64) -> Force {
         let Scale { force_n, displacement_m, speed_m_s, .. } = self.scale;
-        let force = self.law.force(branch, displacement_m * x, speed_m_s * rate);
+        let force = self.law.force(branch, displacement_m * x * (1.0 + self.rounding), speed_m_s * rate);
         Force {
             force: force.force_n / force_n,
             stiffness: force.per_compression_n_m * displacement_m / force_n,
