@@ -42,8 +42,8 @@ impl Body {
     /// `1 / R` (1/m), zero for a flat.
     fn curvature_per_m(&self) -> Result<f64, InvalidInput> {
         if self.radius_m != f64::INFINITY {
-            let allowed =
-                "a radius other than 0: positive for a ball, infinite for a flat surface, negative for a concave seat";
+            let allowed = "a radius from 1e-30 to 1e30 in size, positive for a ball and negative for a concave seat, or infinite \
+                           for a flat surface";
             let holds = self.radius_m.abs() >= 1.0 / LARGEST && self.radius_m.abs() <= LARGEST;
             InvalidInput::unless(holds, "radius_m", self.radius_m, allowed)?;
         }

@@ -359,6 +359,13 @@ fn a_result_is_printed_even_if_its_files_cannot_be_written() {
     }
 }
 
+/// A beam whose rigidity and mass follow from other fields.
+const STEEL: &str = r#"{ "location_m": 0.3,
+    "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "segments": [{ "length_m": 1, "width_m": 0.012,
+        "thickness_m": 0.01, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800 }] },
+    "striker": { "density_kg_m3": 7800, "radius_m": 0.02, "speed_m_s": 1 },
+    "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } }"#;
+
 /// A value that the field of a scene cannot have is an error of this field, of the option or of the file that states it.
 #[test]
 fn errors_name_the_field_that_has_to_change() {
@@ -392,6 +399,7 @@ fn errors_name_the_field_that_has_to_change() {
         ("name.json", &bodies.replace("\"a\"", r#""a\u001b""#)),
         ("contact.json", &bodies.replace("\"c\"", r#""c\u0000""#)),
         ("scene.json", &modes),
+        ("steel.json", STEEL),
         ("axial.json", &modes.replace("\"kind\"", "\"axial_force_n\": 1e12, \"kind\"")),
         ("data.csv", "striker.speed_m_s,restitution\n1,0.3\n2,0.4\n0.5,0.2\n"),
         ("axis.json", &format!(r#"{{ "scene": {modes}, "vary": [{axis}] }}"#)),
@@ -421,6 +429,22 @@ fn errors_name_the_field_that_has_to_change() {
         (&["sensitivity", "alone.json"], "contacts = [] is not allowed"),
         (&["simulate", "name.json"], r#"bodies = "a\u{1b}" is not allowed"#),
         (&["simulate", "contact.json"], r#"contacts[0].name = "c\0" is not allowed"#),
+        (
+            &["modes", "steel.json", "--set", "structure.segments[0].thickness_m=1e-60"],
+            "structure.segments[0].thickness_m = 1e-60 is not allowed; it must be such that the flexural rigidity (now 2.00e-172)",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "structure.segments[0].density_kg_m3=1e300"],
+            "structure.segments[0].density_kg_m3 = 1e+300 is not allowed; it must be such that the mass per length (now 1.20e296)",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "striker.radius_m=1e40"],
+            "it must be a radius from 1e-30 to 1e30 in size",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "structure.segments.0.width_m=1"],
+            "structure.segments is a list, whose first entry is structure.segments[0]",
+        ),
         (&["simulate", "axial.json"], "structure.axial_force_n = 1000000000000 is not allowed"),
         (&["identify", "data.csv", "--scene", "scene.json", "--free", "modes"], "--free modes = 4 is not allowed"),
         (&["sweep", "axis.json", "--out", "o"], "vary[0] = 1 to 3 is not allowed"),

@@ -1,6 +1,6 @@
 //! A beam of uniform segments, and its modes.
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal;
@@ -206,13 +206,24 @@ impl Beam {
         require_count(count)?;
         let modes = || {
             self.damping().check()?;
-            let modes = self.to_system()?.modes(count)?;
+            let modes = self.to_system()?.modes(count).map_err(|fault| self.in_given_fields(fault))?;
             let rigid = modes.rigid_body_count();
             let ratio = |(k, &omega): (usize, &f64)| self.damping().of(k.checked_sub(rigid), omega);
             let damping_ratios = modes.omega_rad_s().iter().enumerate().map(ratio).collect();
             Ok(BeamModes { modes, damping_ratios })
         };
         modes().map_err(|fault: InvalidInput| fault.within("structure"))
+    }
+}
+
+impl Beam {
+    /// The error of a property of a segment in terms of the fields that the segment gives.
+    fn in_given_fields(&self, fault: InvalidInput) -> InvalidInput {
+        let [_, Step::Index(i), _] = *fault.field.steps() else { return fault };
+        match self.segments.get(i).and_then(|segment| segment.in_given_fields(&fault)) {
+            Some(own) if fault.field.first() == Some("segments") => own.at(i).within("segments"),
+            _ => fault,
+        }
     }
 }
 

@@ -14,18 +14,22 @@ pub(crate) fn require_positive(field: impl Into<Path>, value: f64) -> Result<(),
     InvalidInput::require_positive(field, value).map(|_| ()).map_err(as_json)
 }
 
-/// Checks that a quantity which follows from several fields is finite and greater than zero; the error names the most extreme of
-/// the fields.
+/// Checks that a quantity which follows from several fields is finite and greater than zero.
 pub(crate) fn require_product(quantity: &str, value: f64, fields: &[(&str, f64)]) -> Result<(), InvalidInput> {
-    let far = |(_, value): &&(&str, f64)| value.ln().abs();
-    match fields.iter().max_by(|a, b| far(a).total_cmp(&far(b))) {
-        Some((field, extreme)) if !(value > 0.0 && value.is_finite()) => {
-            let all = fields.iter().map(|(field, _)| *field).collect::<Vec<_>>().join(", ");
-            let allowed = format!("such that the {quantity}, which follows from {all}, is neither infinite nor zero");
-            Err(InvalidInput::new(*field, number(*extreme), allowed))
-        }
-        _ => Ok(()),
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
     }
+    Err(of_product(quantity, fields, "neither infinite nor zero"))
+}
+
+/// The error of a quantity that follows from several fields and is not as it is allowed to be: it names the most extreme of them.
+pub(crate) fn of_product(quantity: &str, fields: &[(&str, f64)], allowed: &str) -> InvalidInput {
+    let far = |(_, value): &&(&str, f64)| value.ln().abs();
+    let most = fields.iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+    let (field, extreme) = most.copied().unwrap_or_default();
+    let all = fields.iter().map(|(field, _)| *field).collect::<Vec<_>>().join(", ");
+    let allowed = format!("such that the {quantity}, which follows from {all}, is {allowed}");
+    InvalidInput::new(field, number(extreme), allowed)
 }
 
 /// The values that a field is allowed to have so that this quantity, which follows from it and is out of range, is allowed too.

@@ -77,6 +77,10 @@ impl FieldPath {
                     })?
                 }
                 (Step::Field(_), _) if depth == 0 => return Err("the scene is not an object".to_owned()),
+                (Step::Field(_), Value::Array(_)) => {
+                    let list = self.upto(depth - 1);
+                    return Err(format!("{list} is a list, whose first entry is {list}[0]"));
+                }
                 (Step::Field(_), _) => return Err(format!("{} is not an object", self.upto(depth - 1))),
                 (Step::Index(_), _) => return Err(format!("{} is not a list", self.upto(depth - 1))),
                 _ => return Err(format!("{self} is not the path of a field")),
@@ -153,7 +157,8 @@ mod tests {
         assert_eq!(set("a.new"), Ok(()));
         assert_eq!(set("a.x.y").unwrap_err(), "the scene has no a.x");
         assert_eq!(set("a.b[2]").unwrap_err(), "a.b has 2 entries, counted from 0");
-        assert_eq!(set("a.b.c").unwrap_err(), "a.b is not an object");
+        assert_eq!(set("a.b.c").unwrap_err(), "a.b is a list, whose first entry is a.b[0]");
+        assert_eq!(set("a.b[0].c").unwrap_err(), "a.b[0] is not an object");
         assert_eq!(set("a[0]").unwrap_err(), "a is not a list");
         assert_eq!(tree, json!({ "a": { "b": [1, { "c": 7 }], "new": 7 } }));
     }
@@ -165,7 +170,7 @@ mod tests {
         assert_eq!(set("b.c.d"), Ok(()));
         assert_eq!(set("n.x"), Ok(()));
         assert_eq!(set("a[1]").unwrap_err(), "a has 1 entry, counted from 0");
-        assert_eq!(set("a.x").unwrap_err(), "a is not an object");
+        assert_eq!(set("a.x").unwrap_err(), "a is a list, whose first entry is a[0]");
         assert_eq!(set("list[0]").unwrap_err(), "the scene has no list");
         assert_eq!(tree, json!({ "a": [1], "n": { "x": 7 }, "b": { "c": { "d": 7 } } }));
     }

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use beam_modes::RectangularSegment;
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{require_positive, require_product};
+use super::error::{of_product, require_positive, require_product};
 use super::fields;
 use super::json::number;
 use super::sets::one_of_sets;
@@ -158,6 +158,25 @@ impl Segment {
         require_product("flexural rigidity", piece.flexural_rigidity_n_m2, &rigidity)?;
         require_product("mass per length", piece.mass_per_length_kg_m, &with("density_kg_m3", density))?;
         Ok(piece)
+    }
+
+    /// The error of a property of the section, if the segment does not give it, as one of a field from which it follows.
+    pub(super) fn in_given_fields(&self, fault: &InvalidInput) -> Option<InvalidInput> {
+        let by_modulus = ("youngs_modulus_pa", self.youngs_modulus_pa);
+        let by_density = ("density_kg_m3", self.density_kg_m3);
+        let (quantity, material) = match fault.field.last() {
+            Some("flexural_rigidity_n_m2") => ("flexural rigidity", by_modulus),
+            Some("shear_rigidity_n") => ("shear rigidity", by_modulus),
+            Some("mass_per_length_kg_m") => ("mass per length", by_density),
+            Some("rotary_inertia_kg_m") => ("rotary inertia", by_density),
+            _ => return None,
+        };
+        let sizes = [("width_m", self.width_m), ("thickness_m", self.thickness_m), ("diameter_m", self.diameter_m)];
+        let given = [material].into_iter().chain(sizes);
+        let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
+        let Some(Value::Number(found)) = fault.value else { return None };
+        let quantity = format!("{quantity} (now {found:.2e})");
+        (!fields.is_empty()).then(|| of_product(&quantity, &fields, &fault.allowed))
     }
 
     /// Shear and rotary inertia, or `None` if neither is given.
