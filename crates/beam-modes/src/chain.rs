@@ -195,3 +195,24 @@ impl Chain {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Beam, Segment};
+
+    /// Only where the mass per length is smaller than elsewhere does a part of the foundation remain, and divide the span.
+    #[test]
+    fn a_stiff_foundation_divides_light_spans_alone() {
+        let spans = |masses: &[f64]| {
+            let segment =
+                |mass: &f64| Segment { length_m: 0.5, flexural_rigidity_n_m2: 1.0, mass_per_length_kg_m: *mass };
+            let beam = Beam { segments: masses.iter().map(segment).collect(), ends: [End::Pinned; 2] };
+            let system = BeamSystem { foundation_n_m2: 1e9, ..beam.into() };
+            Chain::on_rest_of_foundation(&system).unwrap().0.spans
+        };
+        assert_eq!(spans(&[1.0, 1.0]).len(), 1);
+        let stepped = spans(&[1.0, 0.6]);
+        assert!(stepped.len() > 10 && stepped[1].start == 0.5, "{}", stepped.len());
+    }
+}

@@ -242,6 +242,8 @@ fn input_out_of_range_is_named() {
     assert_eq!(field(Plate { theory, edges: [P; 4], ..plate }), "shear_coefficient");
     assert_eq!(field(Plate { width_m: 1e-5, ..plate }), "width_m");
     assert_eq!(field(Plate { thickness_m: 1e-150, ..plate }), "thickness_m");
+    assert_eq!(field(Plate { youngs_modulus_pa: 1e300, ..plate }), "youngs_modulus_pa");
+    assert_eq!(field(Plate { density_kg_m3: 1e-300, ..plate }), "density_kg_m3");
     assert_eq!(plate.static_compliance(1.1, 0.5).unwrap_err().field, "x_m");
     assert_eq!(plate.static_compliance(0.5, -0.1).unwrap_err().field, "y_m");
     assert_eq!(plate.modes(100_000).unwrap_err().field, "count");

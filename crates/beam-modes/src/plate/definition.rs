@@ -154,11 +154,17 @@ impl Plate {
         if sizes.iter().all(|size| (1e-200..1e200).contains(size)) {
             Ok(())
         } else {
-            Err(InvalidInput::new(
-                "thickness_m",
-                self.thickness_m,
-                "part of a plate whose modes double precision can represent",
-            ))
+            let fields = [
+                ("length_m", self.length_m),
+                ("width_m", self.width_m),
+                ("thickness_m", self.thickness_m),
+                ("youngs_modulus_pa", self.youngs_modulus_pa),
+                ("density_kg_m3", self.density_kg_m3),
+            ];
+            let far = |(_, value): (&str, f64)| value.ln().abs();
+            let (field, value) =
+                fields.into_iter().fold(fields[0], |most, next| if far(next) > far(most) { next } else { most });
+            Err(InvalidInput::new(field, value, "part of a plate whose modes double precision can represent"))
         }
     }
 
