@@ -439,7 +439,11 @@ fn errors_name_the_field_that_has_to_change() {
         ),
         (
             &["simulate", "steel.json", "--set", "striker.radius_m=1e40"],
-            "it must be a radius from 1e-30 to 1e30 in size",
+            "striker.radius_m = 1e+40 is not allowed; it must be such that the mass of the sphere (now 3.27e124)",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "striker.density_kg_m3=1e-40"],
+            "striker.density_kg_m3 = 1e-40 is not allowed; it must be such that the mass of the sphere",
         ),
         (
             &["simulate", "steel.json", "--set", "structure.segments.0.width_m=1"],

@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
+use contact_models::LARGEST;
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::require_positive;
+use super::error::{of_product, require_positive};
 use super::json::number;
 
 /// The compact body: its mass (or a solid sphere's density and radius) and its speed.
@@ -66,6 +67,11 @@ impl Striker {
             (Some(_), Some(density), None) => {
                 let allowed = "left out in the presence of mass_kg, or given with radius_m instead of mass_kg";
                 Err(InvalidInput::new("density_kg_m3", number(density), allowed))
+            }
+            (None, Some(density), Some(mass)) if !(1.0 / LARGEST..=LARGEST).contains(&mass) => {
+                let fields = [("density_kg_m3", density), ("radius_m", radius_m.unwrap_or_default())];
+                let quantity = format!("mass of the sphere (now {mass:.2e})");
+                Err(of_product(&quantity, &fields, "from 1e-30 to 1e30"))
             }
             (Some(mass), None, _) | (None, _, Some(mass)) => Ok(mass),
             (None, density, None) => {
