@@ -7,7 +7,7 @@ use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 pub(super) struct Scaled<'a> {
     pub law: &'a dyn ContactLaw,
     pub scale: Scale,
-    /// The part of every compression by which the force is that of a larger one: zero, or as much as rounding.
+    /// The force is that of a compression which is larger by this part of itself: zero, or as much as rounding.
     pub rounding: f64,
 }
 

@@ -20,12 +20,6 @@ pub(super) struct Panel {
     pub force: Legendre,
 }
 
-impl Panel {
-    fn end_s(&self) -> f64 {
-        self.start_s + self.length_s
-    }
-}
-
 impl Pulse {
     /// The Fourier transform `int F e^{i omega (t - t0)} dt`, with `t0` the time from which the force is taken: real and imaginary
     /// part (N s), in closed form.
@@ -46,7 +40,9 @@ impl Pulse {
     pub fn transform_n_s(&self, omega_rad_s: f64) -> [f64; 2] {
         let mut sum = Complex64::ZERO;
         // most panels follow one of the same length
-        for run in self.panels.chunk_by(|one, next| next.length_s == one.length_s && next.start_s == one.end_s()) {
+        let follows =
+            |one: &Panel, next: &Panel| next.length_s == one.length_s && next.start_s == one.start_s + one.length_s;
+        for run in self.panels.chunk_by(follows) {
             let [first, ..] = run else { continue };
             let bessel = spherical_bessel(0.5 * omega_rad_s * first.length_s);
             let middle_s = first.start_s - self.from_s + 0.5 * first.length_s;

@@ -160,7 +160,7 @@ impl Segment {
         Ok(piece)
     }
 
-    /// The error of a property of the section, if the segment does not give it, as one of a field from which it follows.
+    /// The error of a property of the section as that of a field from which it follows; `None` if the segment gives it.
     pub(super) fn in_given_fields(&self, fault: &InvalidInput) -> Option<InvalidInput> {
         let by_modulus = ("youngs_modulus_pa", self.youngs_modulus_pa);
         let by_density = ("density_kg_m3", self.density_kg_m3);
