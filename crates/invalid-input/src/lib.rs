@@ -24,12 +24,14 @@
 extern crate alloc;
 
 mod error;
+mod extreme;
 mod names;
 mod path;
 mod told;
 mod value;
 
 pub use error::InvalidInput;
+pub use extreme::most_extreme;
 pub use path::{Path, Step};
 pub use told::{LONGEST_VALUE, cut, printable};
 pub use value::{Text, Value};

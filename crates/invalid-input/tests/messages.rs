@@ -1,6 +1,6 @@
 //! The text of an error, and how its path grows.
 
-use invalid_input::{InvalidInput, Path, Step, Value, cut, printable};
+use invalid_input::{InvalidInput, Path, Step, Value, cut, most_extreme, printable};
 
 #[test]
 fn a_path_grows_from_the_inside_out() {
@@ -80,6 +80,24 @@ fn a_parent_can_be_removed() {
     let within = fault.clone().within("structure");
     assert_eq!(within.clone().without("segments"), within);
     assert_eq!(within.without("structure"), fault);
+}
+
+#[test]
+fn the_most_extreme_field_is_farthest_from_one() {
+    let named = |values: &[f64]| most_extreme(values.iter().copied().enumerate()).map(|(i, _)| i);
+    assert_eq!(named(&[]), None);
+    assert_eq!(named(&[1.0]), Some(0));
+    // a small number counts as its reciprocal, and signs do not count
+    assert_eq!(named(&[1e3, 1e-4, 1.0]), Some(1));
+    assert_eq!(named(&[1e-3, 1e4]), Some(1));
+    assert_eq!(named(&[1e3, -1e4]), Some(1));
+    // of equally extreme ones the first
+    assert_eq!(named(&[2.0, 8.0, 0.125, 8.0]), Some(1));
+    for most in [1e300, 1e-300, f64::from_bits(1), 0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, -f64::NAN] {
+        assert_eq!(named(&[2e11, most, 1e-60]), Some(1), "{most}");
+        assert_eq!(named(&[most, 2e11]), Some(0), "{most}");
+    }
+    assert_eq!(named(&[f64::INFINITY, f64::NAN]), Some(1));
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

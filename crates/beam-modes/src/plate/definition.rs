@@ -1,7 +1,7 @@
 //! Material, dimensions and boundary conditions of a plate.
 
 use crate::location::require_on;
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, most_extreme};
 
 /// The boundary condition at an edge of a plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,13 +123,14 @@ impl Plate {
     /// A length, modulus or density that is not positive, a Poisson's ratio out of range, Mindlin's theory for a plate that is
     /// not pinned along all edges, or a ratio of length and width beyond 10,000.
     pub fn checked(&self) -> Result<(), InvalidInput> {
-        for (field, value) in [
+        let sizes = [
             ("length_m", self.length_m),
             ("width_m", self.width_m),
             ("thickness_m", self.thickness_m),
             ("youngs_modulus_pa", self.youngs_modulus_pa),
             ("density_kg_m3", self.density_kg_m3),
-        ] {
+        ];
+        for (field, value) in sizes {
             InvalidInput::require_positive(field, value)?;
         }
         let nu = self.poissons_ratio;
@@ -150,22 +151,12 @@ impl Plate {
         }
         let (rigidity, mass) = (self.flexural_rigidity_n_m(), self.mass_kg());
         let largest = (rigidity / self.mass_per_area_kg_m2()).sqrt() / self.length_m.min(self.width_m).powi(2);
-        let sizes = [rigidity, mass, largest, 1.0 / mass, self.length_m.max(self.width_m).powi(2) / rigidity];
-        if sizes.iter().all(|size| (1e-200..1e200).contains(size)) {
-            Ok(())
-        } else {
-            let fields = [
-                ("length_m", self.length_m),
-                ("width_m", self.width_m),
-                ("thickness_m", self.thickness_m),
-                ("youngs_modulus_pa", self.youngs_modulus_pa),
-                ("density_kg_m3", self.density_kg_m3),
-            ];
-            let far = |(_, value): (&str, f64)| value.ln().abs();
-            let (field, value) =
-                fields.into_iter().fold(fields[0], |most, next| if far(next) > far(most) { next } else { most });
-            Err(InvalidInput::new(field, value, "part of a plate whose modes double precision can represent"))
+        let products = [rigidity, mass, largest, 1.0 / mass, self.length_m.max(self.width_m).powi(2) / rigidity];
+        if products.iter().all(|product| (1e-200..1e200).contains(product)) {
+            return Ok(());
         }
+        let (field, value) = most_extreme(sizes).unwrap_or_default();
+        Err(InvalidInput::new(field, value, "part of a plate whose modes double precision can represent"))
     }
 
     /// A location as shares of length and width.

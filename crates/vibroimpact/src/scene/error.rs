@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use invalid_input::{InvalidInput, Path, Value, cut, printable};
+use invalid_input::{InvalidInput, Path, Value, cut, most_extreme, printable};
 
 use super::told::number;
 
@@ -24,9 +24,7 @@ pub(crate) fn require_product(quantity: &str, value: f64, fields: &[(&str, f64)]
 
 /// The error of a quantity that follows from several fields and is not as it is allowed to be: it names the most extreme of them.
 pub(crate) fn of_product(quantity: &str, fields: &[(&str, f64)], allowed: &str) -> InvalidInput {
-    let far = |(_, value): &&(&str, f64)| value.ln().abs();
-    let most = fields.iter().max_by(|a, b| far(a).total_cmp(&far(b)));
-    let (field, extreme) = most.copied().unwrap_or_default();
+    let (field, extreme) = most_extreme(fields.iter().copied()).unwrap_or_default();
     let all = fields.iter().map(|(field, _)| *field).collect::<Vec<_>>().join(", ");
     let allowed = format!("such that the {quantity}, which follows from {all}, is {allowed}");
     InvalidInput::new(field, number(extreme), allowed)
