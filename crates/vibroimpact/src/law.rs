@@ -306,7 +306,7 @@ fn of_request(kind: Kind, wanted: &Wanted, fault: InvalidInput) -> InvalidInput 
         _ => return fault,
     };
     let parameter = format!("{} of the law {name}", fault.field);
-    InvalidInput::new(field, value, such_that(&parameter, fault))
+    InvalidInput::new(field, value, such_that(&parameter, &fault))
 }
 
 /// A law with the requested restitution. A law that cannot have it is an error only if it was requested by name.

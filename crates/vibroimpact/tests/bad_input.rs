@@ -431,15 +431,15 @@ fn errors_name_the_field_that_has_to_change() {
         (&["simulate", "contact.json"], r#"contacts[0].name = "c\0" is not allowed"#),
         (
             &["modes", "steel.json", "--set", "structure.segments[0].thickness_m=1e-60"],
-            "structure.segments[0].thickness_m = 1e-60 is not allowed; it must be such that the flexural rigidity (now 2.00e-172)",
+            "structure.segments[0].thickness_m = 1e-60 is not allowed; it must be such that the flexural rigidity, now 2e-172,",
         ),
         (
             &["simulate", "steel.json", "--set", "structure.segments[0].density_kg_m3=1e300"],
-            "structure.segments[0].density_kg_m3 = 1e+300 is not allowed; it must be such that the mass per length (now 1.20e296)",
+            "structure.segments[0].density_kg_m3 = 1e+300 is not allowed; it must be such that the mass per length, now 1.2e296,",
         ),
         (
             &["simulate", "steel.json", "--set", "striker.radius_m=1e40"],
-            "striker.radius_m = 1e+40 is not allowed; it must be such that the mass of the sphere (now 3.27e124)",
+            "striker.radius_m = 1e+40 is not allowed; it must be such that the mass of the sphere, now 3.27e124, is from 1e-30 to 1e30; it follows from density_kg_m3, radius_m",
         ),
         (
             &["simulate", "steel.json", "--set", "striker.density_kg_m3=1e-40"],

@@ -162,7 +162,7 @@ impl Scene {
             (Some(mass_kg), _) => ("mass_kg", mass_kg),
             (None, radius_m) => ("radius_m", radius_m.unwrap_or(f64::NAN)),
         };
-        let allowed = such_that(&format!("the {quantity} of the impact"), fault);
+        let allowed = such_that(&format!("the {quantity} of the impact"), &fault);
         InvalidInput::new(["striker", field], number(value), format!("{allowed}; it {from}"))
     }
 }

@@ -136,7 +136,7 @@ fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
     Impact::new(effective_kg, &Site::new(&vibrating(modes))?).map_err(|fault| match fault.field.first() {
-        Some("z") => InvalidInput::new("mass_kg", mass_kg, such_that("Z = m sum phi_k^2", fault)),
+        Some("z") => InvalidInput::new("mass_kg", mass_kg, such_that("Z = m sum phi_k^2", &fault)),
         _ => fault,
     })
 }

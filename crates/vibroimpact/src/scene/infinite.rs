@@ -4,7 +4,8 @@ use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{require_positive, require_product};
+use super::error::require_positive;
+use super::extreme::require_product;
 use super::json::number;
 use super::segment::Segment;
 

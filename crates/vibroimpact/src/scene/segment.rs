@@ -7,7 +7,8 @@ use invalid_input::{InvalidInput, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{of_product, require_positive, require_product};
+use super::error::require_positive;
+use super::extreme::{of_product, require_product};
 use super::fields;
 use super::json::number;
 use super::sets::one_of_sets;
@@ -175,8 +176,7 @@ impl Segment {
         let given = [material].into_iter().chain(sizes);
         let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
         let Some(Value::Number(found)) = fault.value else { return None };
-        let quantity = format!("{quantity} (now {found:.2e})");
-        (!fields.is_empty()).then(|| of_product(&quantity, &fields, &fault.allowed))
+        (!fields.is_empty()).then(|| of_product(quantity, found, &fields, &fault.allowed))
     }
 
     /// Shear and rotary inertia, or `None` if neither is given.

@@ -7,7 +7,8 @@ use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{of_product, require_positive};
+use super::error::require_positive;
+use super::extreme::of_product;
 use super::json::number;
 
 /// The compact body: its mass (or a solid sphere's density and radius) and its speed.
@@ -70,8 +71,7 @@ impl Striker {
             }
             (None, Some(density), Some(mass)) if !(1.0 / LARGEST..=LARGEST).contains(&mass) => {
                 let fields = [("density_kg_m3", density), ("radius_m", radius_m.unwrap_or_default())];
-                let quantity = format!("mass of the sphere (now {mass:.2e})");
-                Err(of_product(&quantity, &fields, "from 1e-30 to 1e30"))
+                Err(of_product("mass of the sphere", mass, &fields, "from 1e-30 to 1e30"))
             }
             (Some(mass), None, _) | (None, _, Some(mass)) => Ok(mass),
             (None, density, None) => {
