@@ -9,7 +9,8 @@ use crate::model::Kept;
 use crate::same_modes::{Match, Seen, matched};
 use crate::scene::json::number;
 use crate::scene::{
-    self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, require_elastic,
+    self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, of_computed_mode,
+    require_elastic,
 };
 
 /// The input of [`vibroimpact_sim::modal`] for one impact.
@@ -164,7 +165,13 @@ impl Scene {
             [self.structure.modes_with(place, count, &mut kept.modes)?, Vec::new()]
         };
         let remainder = modes[1].len();
-        Ok((Structure { modes: modes.concat() }, remainder))
+        Ok((self.solvable(Structure { modes: modes.concat() })?, remainder))
+    }
+
+    /// These modes of the structure, if they lie in the range of the solver. Listed modes have been checked under their own names.
+    pub(crate) fn solvable(&self, structure: Structure) -> Result<Structure, InvalidInput> {
+        let checked = structure.check().map_err(|fault| of_computed_mode(fault.within("structure"), self));
+        checked.map(|()| structure)
     }
 
     /// The first `count` modes of the structure with their shapes at the point of impact, whatever the scene's number of modes.
@@ -264,6 +271,7 @@ impl Scene {
         };
         let law = self.law(&end, speed_m_s, Some(drop.law))?;
         let vibroimpact_sim::dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
+        let structure = self.solvable(structure)?;
         Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
     }
 }

@@ -5,13 +5,8 @@ use invalid_input::{InvalidInput, Step, Value};
 /// The solver's error with the field names of scenes.
 pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
     match fault.field.steps() {
-        // lists of modes have been checked by their names; these modes were computed
-        [_, Step::Index(k), Step::Field(quantity)] => {
-            let mode = k + 1;
-            let value = fault.value.as_ref().map_or_else(String::new, ToString::to_string);
-            let allowed = format!("a structure in whose modes {quantity} is {}", fault.allowed);
-            InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
-        }
+        // the modes of a scene have been checked where they were computed or read
+        [Step::Field(list), Step::Index(_), ..] if list == "modes" => fault.within("structure"),
         // a striker of infinite mass is a stop
         [Step::Field(name)] if name == "mass_kg" && fault.value == Some(Value::Number(f64::INFINITY)) => {
             let allowed = "left out, with a mass in its place, because no mode of the structure moves at the contact";

@@ -102,7 +102,7 @@ impl Scene {
     /// As [`Scene::posed_on_infinite`], or numbers out of the range of the solver.
     pub fn solve_infinite(&self) -> Result<(Scale, infinite::Solution), InvalidInput> {
         let posed = self.posed_on_infinite()?;
-        posed.solve(&infinite::Settings::default()).map_err(|fault| self.of_striker(fault))
+        posed.solve(&infinite::Settings::default()).map_err(|fault| self.of_extreme_field(fault))
     }
 }
 

@@ -372,6 +372,13 @@ fn errors_name_the_field_that_has_to_change() {
     let infinite = r#"{ "structure": { "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
         "width_m": 0.028, "thickness_m": 0.028 }, "striker": { "density_kg_m3": 7800, "radius_m": 0.13, "speed_m_s": 0.5 },
         "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } }"#;
+    let weightless = r#"{ "structure": { "kind": "infinite-beam", "flexural_rigidity_n_m2": 5e-324,
+        "mass_per_length_kg_m": 5e-324 }, "striker": { "mass_kg": 1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#;
+    let light = r#"{ "bodies": { "bar": { "kind": "beam", "modes": 2, "ends": ["pinned", "pinned"], "segments": [{ "length_m": 1,
+        "flexural_rigidity_n_m2": 1, "mass_per_length_kg_m": 1e-50 }] } },
+        "contacts": [{ "name": "c", "between": [{ "body": "bar", "location_m": 0.3 }, "ground"], "law": "hertz",
+        "stiffness_n_m1_5": 1e9 }], "end_s": 0.01 }"#;
     let bodies = r#"{ "bodies": { "a": { "kind": "mass", "mass_kg": 1, "velocity_m_s": -1 } },
         "contacts": [{ "name": "c", "between": [{ "body": "a" }, "ground"], "law": "hertz", "stiffness_n_m1_5": 1e9 }],
         "loads": [{ "body": "a", "force_n": 1, "frequency_hz": 5 }], "end_s": 0.01 }"#;
@@ -390,6 +397,8 @@ fn errors_name_the_field_that_has_to_change() {
     let folder = folder(&[
         ("infinite.json", infinite),
         ("fast.json", &infinite.replace("0.5", "1e300")),
+        ("weightless.json", weightless),
+        ("light.json", light),
         ("wide.json", &infinite.replace("\"width_m\": 0.028", "\"width_m\": 1e300")),
         ("slow.json", &load(r#""force_n": 1, "frequency_hz": 1e-300"#)),
         ("short.json", &load(r#""times_s": [], "forces_n": []"#)),
@@ -417,7 +426,31 @@ fn errors_name_the_field_that_has_to_change() {
             &["simulate", "infinite.json"][..],
             "striker.radius_m = 0.13 is not allowed; it must be such that the number S",
         ),
-        (&["infinite-beam", "fast.json"], "striker.radius_m = 0.13"),
+        (&["infinite-beam", "fast.json"], "striker.speed_m_s = 1e+300 is not allowed; it must be such that"),
+        (
+            &["simulate", "infinite.json", "--set", "structure.thickness_m=1e-9"],
+            "structure.thickness_m = 1e-9 is not allowed; it must be such that the number S of the impact, now",
+        ),
+        (
+            &["simulate", "infinite.json", "--set", "contact.youngs_modulus_pa=1e25"],
+            "contact.youngs_modulus_pa = 1e+25 is not allowed; it must be such that the number S",
+        ),
+        (
+            &["simulate", "weightless.json"],
+            "it must be such that the impulse response of the structure, now inf, is a finite number greater than 0",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "modes=4", "--set", "structure.segments[0].density_kg_m3=1e-30"],
+            "structure.segments[0].density_kg_m3 = 1e-30 is not allowed; it must be such that omega_rad_s of mode 1, now",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "structure.rayleigh_stiffness_s=1e9"],
+            "structure.rayleigh_stiffness_s = 1000000000.0 is not allowed; it must be such that damping_ratio of mode",
+        ),
+        (
+            &["simulate", "light.json"],
+            "bodies.bar.segments[0].mass_per_length_kg_m = 1e-50 is not allowed; it must be such that omega_rad_s of mode 1",
+        ),
         (
             &["simulate", "wide.json"],
             "structure.width_m = 1e+300 is not allowed; it must be such that the flexural rigidity",

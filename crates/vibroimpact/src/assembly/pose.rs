@@ -15,7 +15,7 @@ use super::load::require_finite;
 use super::seen::Seen;
 use crate::scene::fields::NOT_NEGATIVE;
 use crate::scene::json::number;
-use crate::scene::{InvalidInput, Place, by_frequency};
+use crate::scene::{InvalidInput, Place, by_frequency, of_computed_mode};
 
 /// The input of [`vibroimpact_sim::assembly`], and the names of its parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +94,7 @@ impl AssemblyScene {
             of_scene,
             loads: of_scene_loads,
         };
-        posed.assembly.check().map_err(|fault| posed.in_scene(fault))?;
+        posed.assembly.check().map_err(|fault| of_computed_mode(posed.in_scene(fault), self))?;
         Ok(posed)
     }
 

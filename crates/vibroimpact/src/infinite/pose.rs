@@ -6,7 +6,7 @@ use vibroimpact_sim::infinite::{self, PlateSection, Receptance, Scale, Solution}
 use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
-use crate::scene::{Contact, Scene, Structure, such_that};
+use crate::scene::{Contact, Scene, Structure, most_extreme_in, such_that};
 
 /// An impact on an infinite structure in the terms of the solvers.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,40 +129,46 @@ impl Scene {
         .map_err(|fault| match fault.field.first() {
             Some("mass_kg" | "speed_m_s") => fault.within("striker"),
             Some("stiffness_n_m1_5") => fault.within("contact"),
-            Some("impulse_response") => {
-                let kind = format!("\"{}\"", self.structure.kind());
-                let allowed =
-                    "a structure whose stiffness and mass give an impulse response that is neither infinite nor zero";
-                InvalidInput::new("structure", kind, allowed)
-            }
+            Some("impulse_response") => self.of_extreme_field(fault),
             _ => fault.within("structure"),
         })?;
         let hertz = matches!(self.contact, Contact::Hertz(_)).then_some(impact);
         Ok(Posed { receptance: impact.receptance(), striker, law, hertz })
     }
 
-    /// An error of a quantity that follows from striker, contact and structure, as one of the field that states the striker's
-    /// mass: of all fields this one has the largest effect.
-    pub(crate) fn of_striker(&self, fault: InvalidInput) -> InvalidInput {
-        let (quantity, from) = match fault.field.first() {
+    /// An error of a quantity that follows from striker, contact and structure, as that of the most extreme of the fields that it
+    /// follows from.
+    pub(crate) fn of_extreme_field(&self, fault: InvalidInput) -> InvalidInput {
+        let (quantity, follows, others): (_, _, &[&str]) = match fault.field.first() {
             Some("s") => (
-                "number S",
-                "grows with mass and speed of the striker, and falls with stiffness and mass of the structure",
+                "number S of the impact",
+                "grows with mass and speed of the striker and with the stiffness of the contact, and falls with stiffness and mass \
+                 of the structure",
+                &[],
             ),
-            Some("time_s") => {
-                ("unit of time T", "follows from the mass of the striker and the section of the structure")
-            }
-            Some("force_n") => ("unit of force m v/T", "follows from the striker and the section of the structure"),
-            Some("displacement_m") => {
-                ("unit of length v T", "follows from the striker and the section of the structure")
+            Some("time_s") => (
+                "unit of time T of the impact",
+                "follows from the mass of the striker and the section of the structure",
+                &["contact", "speed_m_s"],
+            ),
+            Some("force_n") => (
+                "unit of force m v/T of the impact",
+                "follows from the striker and the section of the structure",
+                &["contact"],
+            ),
+            Some("displacement_m") => (
+                "unit of length v T of the impact",
+                "follows from the striker and the section of the structure",
+                &["contact"],
+            ),
+            Some("impulse_response") => {
+                ("impulse response of the structure", "falls with its stiffness and mass", &["contact", "striker"])
             }
             _ => return fault,
         };
-        let (field, value) = match (self.striker.mass_kg, self.striker.radius_m) {
-            (Some(mass_kg), _) => ("mass_kg", mass_kg),
-            (None, radius_m) => ("radius_m", radius_m.unwrap_or(f64::NAN)),
-        };
-        let allowed = such_that(&format!("the {quantity} of the impact"), &fault);
-        InvalidInput::new(["striker", field], number(value), format!("{allowed}; it {from}"))
+        let counts = |path: &Path| !others.iter().any(|other| [path.first(), path.last()].contains(&Some(*other)));
+        let Some((field, value)) = most_extreme_in(&self.tree(), counts) else { return fault };
+        let allowed = such_that(&format!("the {quantity}"), &fault);
+        InvalidInput::new(field, number(value), format!("{allowed}; it {follows}"))
     }
 }

@@ -125,7 +125,7 @@ impl<'a> Pose<'a> {
             }
             listed => {
                 let modes = listed.modes(scene.place(), scene.modes.count())?;
-                Structure { modes: modes.clone() }.check().map_err(in_scene)?;
+                let modes = scene.solvable(Structure { modes })?.modes;
                 let whole_m_n = match listed {
                     scene::Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
                         let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
@@ -164,7 +164,7 @@ impl<'a> Pose<'a> {
         };
         let mut modes: Vec<Mode> = known[..count].iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
         modes.extend(&remainder);
-        Ok((Structure { modes }, remainder.len()))
+        Ok((scene.solvable(Structure { modes })?, remainder.len()))
     }
 
     /// Whether the listed modes are all modes of the structure: they make up its static compliance.
