@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
 use vibroimpact_sim::modal::Mode;
 
+use super::damping::require_damping;
 use super::fields;
 use super::json::number;
 
@@ -56,13 +57,11 @@ impl DroppedRod {
     /// # Errors
     /// An inclination or a damping ratio out of range; [`dropped_rod::DroppedRod::drop`] checks the rest.
     pub fn to_rod(&self) -> Result<dropped_rod::DroppedRod, InvalidInput> {
-        for (field, value, most) in
-            [("inclination_deg", self.inclination_deg, 90.0), ("damping_ratio", self.damping_ratio, 1e6)]
-        {
-            if !(0.0..=most).contains(&value) {
-                return Err(InvalidInput::new(field, number(value), fields::allowed(field).unwrap_or_default()));
-            }
+        if !(0.0..=90.0).contains(&self.inclination_deg) {
+            let allowed = fields::allowed("inclination_deg").unwrap_or_default();
+            return Err(InvalidInput::new("inclination_deg", number(self.inclination_deg), allowed));
         }
+        require_damping(self.damping_ratio)?;
         Ok(dropped_rod::DroppedRod {
             length_m: self.length_m,
             diameter_m: self.diameter_m,

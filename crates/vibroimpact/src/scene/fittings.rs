@@ -1,11 +1,12 @@
 //! What may be fixed to a beam, and how it is damped.
 
-use invalid_input::{InvalidInput, Path};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::fields;
+use super::damping::require_damping;
 use super::json::number;
+use super::ranges::NOT_NEGATIVE;
 
 /// Masses and springs fixed to a beam at one location; all fields but the location may be left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -54,16 +55,15 @@ pub(crate) struct Damping<'a> {
 
 impl Damping<'_> {
     pub fn check(&self) -> Result<(), InvalidInput> {
-        let given = [
-            ("damping_ratio", self.ratio),
-            ("rayleigh_mass_per_s", self.rayleigh[0]),
-            ("rayleigh_stiffness_s", self.rayleigh[1]),
-        ];
-        for (field, value) in given {
-            require_not_negative(field, field, value)?;
+        require_damping(self.ratio)?;
+        let [mass_per_s, stiffness_s] = self.rayleigh;
+        for (field, value) in [("rayleigh_mass_per_s", mass_per_s), ("rayleigh_stiffness_s", stiffness_s)] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(InvalidInput::new(field, number(value), NOT_NEGATIVE));
+            }
         }
-        for (k, &value) in self.ratios.iter().enumerate() {
-            require_not_negative(("damping_ratios", k), "damping_ratio", value)?;
+        for (k, &ratio) in self.ratios.iter().enumerate() {
+            require_damping(ratio).map_err(|fault| fault.under(("damping_ratios", k)))?;
         }
         Ok(())
     }
@@ -77,15 +77,4 @@ impl Damping<'_> {
             _ => ratio,
         }
     }
-}
-
-/// Largest damping ratio that the solver takes.
-const MOST_DAMPING: f64 = 1e6;
-
-fn require_not_negative(path: impl Into<Path>, field: &str, value: f64) -> Result<(), InvalidInput> {
-    let most = if field == "damping_ratio" { MOST_DAMPING } else { f64::MAX };
-    if value >= 0.0 && value <= most {
-        return Ok(());
-    }
-    Err(InvalidInput::new(path, number(value), fields::allowed(field).unwrap_or_default()))
 }
