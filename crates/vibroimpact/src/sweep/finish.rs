@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::BufReader;
+use std::path::PathBuf;
 
 use super::definition::Sweep;
 use super::error::SweepError;
@@ -19,7 +20,7 @@ use super::uncertain::{self, Collector, Uncertain};
 pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<Tally, SweepError> {
     if part != Part::WHOLE {
         let tally = each_row(sweep, part, folder, |_, _| Ok(()))?;
-        close(folder, &tally)?;
+        close(folder, &tally, Vec::new())?;
         return Ok(tally);
     }
     let file = folder.path().join(TABLE);
@@ -37,17 +38,20 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     table.close(&unfinished)?;
     settle(&unfinished, &file).map_err(SweepError::io(&file))?;
     let path = folder.path();
+    let mut made = vec![file];
     let figures = match (distributions, &sweep.uncertain) {
         (Some(distributions), Some(uncertain)) => {
             let found = distributions.finish();
             tally.add_distributions(uncertain, !sweep.axes.is_empty(), &found);
+            made.push(path.join(DISTRIBUTION));
             write_durably(&path.join(DISTRIBUTION), &uncertain::table(sweep, &found))?;
             uncertain::figures(sweep, &found)
         }
         _ => pictures.figures().into_iter().map(|(name, figure, caption)| (name.to_owned(), figure, caption)).collect(),
     };
-    report::report(sweep, &tally, figures).and_then(|report| report.write(path)).map_err(SweepError::io(path))?;
-    close(folder, &tally)?;
+    let report = report::report(sweep, &tally, figures).and_then(|report| report.write(path));
+    made.extend(report.map_err(SweepError::io(path))?);
+    close(folder, &tally, made)?;
     Ok(tally)
 }
 
@@ -62,20 +66,18 @@ pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bo
     Ok(draws.enough())
 }
 
-/// The summary of a finished folder. If it cannot be read, or another file that is made from the rows is missing, they are made again.
+/// The summary of a finished folder. If a file that was made from the rows is missing or was changed, all of them are made again.
 pub(super) fn summary(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<Tally, SweepError> {
-    let path = folder.path();
-    let made = [TABLE, "report.html", "report.md"].into_iter().chain(sweep.uncertain.as_ref().map(|_| DISTRIBUTION));
-    let is_whole = part != Part::WHOLE || made.into_iter().all(|name| path.join(name).is_file());
-    match read_json(&path.join(SUMMARY)) {
-        Ok(Some(tally)) if is_whole => Ok(tally),
+    match read_json(&folder.path().join(SUMMARY)) {
+        Ok(Some(tally)) if folder.is_intact() => Ok(tally),
         _ => finish(sweep, part, folder),
     }
 }
 
-fn close(folder: &mut Folder, tally: &Tally) -> Result<(), SweepError> {
+fn close(folder: &mut Folder, tally: &Tally, mut made: Vec<PathBuf>) -> Result<(), SweepError> {
+    made.push(folder.path().join(SUMMARY));
     write_durably(&folder.path().join(SUMMARY), &json(tally)?)?;
-    folder.finish()
+    folder.finish(&made)
 }
 
 /// Reads the rows in order.

@@ -4,6 +4,7 @@
 //! number of chunks in `results.csv`, its length and its checksum. Bytes beyond that length were being written when the sweep was
 //! interrupted, and are dropped when it is resumed.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -40,7 +41,7 @@ impl Record {
 }
 
 /// The progress of a folder, `progress.json`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Chunks whose rows are in `results.csv`.
     pub chunks: u64,
@@ -50,6 +51,9 @@ pub(super) struct Progress {
     pub crc32: u32,
     /// Whether the final files are complete too.
     pub finished: bool,
+    /// Checksums of the final files, by their paths in the folder.
+    #[serde(default)]
+    pub made: BTreeMap<String, u32>,
 }
 
 /// A folder that only this process uses.
@@ -83,19 +87,12 @@ impl Folder {
             return Err(SweepError::Refused(text));
         }
         let record = Record::new(sweep, part);
-        let found = read_json::<Record>(&path.join(RECORD))?;
-        if let Some(found) = &found {
-            same_sweep(path, found, &record)?;
-        } else if let Some(name) = WRITTEN.into_iter().find(|name| path.join(name).symlink_metadata().is_ok()) {
-            let folder = path.display();
-            let text = format!(
-                "{folder} holds {name}, but no {RECORD}, so it is not the folder of a sweep; choose another folder"
-            );
-            return Err(SweepError::Refused(text));
-        }
+        // nothing is written into the folder of something else
+        has_begun(path, &record)?;
         fs::create_dir_all(path).map_err(SweepError::io(path))?;
         let lock = lock(path)?;
-        if found.is_none() {
+        // until now another process may have begun a sweep in it
+        if !has_begun(path, &record)? {
             write_durably(&path.join(RECORD), &json(&record)?)?;
         }
         let file = path.join(RESULTS);
@@ -108,8 +105,7 @@ impl Folder {
             }
             _ => SweepError::Io { path: file, source },
         })?;
-        let progress = begun.unwrap_or(Progress { chunks: 0, bytes: 0, crc32: 0, finished: false });
-        let mut folder = Folder { path: path.to_owned(), results, progress, _lock: lock };
+        let mut folder = Folder { path: path.to_owned(), results, progress: begun.unwrap_or_default(), _lock: lock };
         if is_new {
             folder.cut()?;
             folder.append(0, &row::header(sweep))?;
@@ -127,10 +123,22 @@ impl Folder {
         &self.progress
     }
 
-    /// Records that the folder is finished.
-    pub(super) fn finish(&mut self) -> Result<(), SweepError> {
+    /// Records that the folder is finished, with the files that were made from the rows.
+    pub(super) fn finish(&mut self, made: &[PathBuf]) -> Result<(), SweepError> {
+        let sum_of = |path: &PathBuf| {
+            let name = path.strip_prefix(&self.path).unwrap_or(path).to_string_lossy().replace('\\', "/");
+            Ok((name, checksum_of(path).map_err(SweepError::io(path))?))
+        };
+        self.progress.made = made.iter().map(sum_of).collect::<Result<_, SweepError>>()?;
         self.progress.finished = true;
         self.save()
+    }
+
+    /// Whether all files that were made from the rows are as they were made.
+    pub(super) fn is_intact(&self) -> bool {
+        let made = &self.progress.made;
+        !made.is_empty()
+            && made.iter().all(|(name, sum)| checksum_of(&self.path.join(name)).is_ok_and(|found| found == *sum))
     }
 
     fn save(&self) -> Result<(), SweepError> {
@@ -193,6 +201,13 @@ pub(super) fn look_into(path: &Path) -> Result<Finished, SweepError> {
     Ok(Finished { record, progress })
 }
 
+/// The checksum of a whole file.
+fn checksum_of(path: &Path) -> io::Result<u32> {
+    let mut file = File::open(path)?;
+    let bytes = file.metadata()?.len();
+    checksum(&mut file, bytes)?.ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
+}
+
 /// The checksum of the first bytes of a file; `None` if it is shorter.
 fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
     file.seek(SeekFrom::Start(0))?;
@@ -209,6 +224,27 @@ fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
         left -= count as u64;
     }
     Ok(Some(sum.finalize()))
+}
+
+/// Whether this sweep has begun in the folder. If it has not, a process may have been stopped before it wrote the record: the folder is
+/// then empty, or has no files but the lock and a part of the record.
+///
+/// # Errors
+/// The folder is that of another sweep, or of something else.
+fn has_begun(path: &Path, record: &Record) -> Result<bool, SweepError> {
+    if let Some(found) = read_json::<Record>(&path.join(RECORD))? {
+        return same_sweep(path, &found, record).map(|()| true);
+    }
+    match WRITTEN.into_iter().find(|name| path.join(name).symlink_metadata().is_ok()) {
+        None => Ok(false),
+        Some(name) => {
+            let folder = path.display();
+            let text = format!(
+                "{folder} holds {name}, but no {RECORD}, so it is not the folder of a sweep; choose another folder"
+            );
+            Err(SweepError::Refused(text))
+        }
+    }
 }
 
 fn same_sweep(path: &Path, found: &Record, wanted: &Record) -> Result<(), SweepError> {

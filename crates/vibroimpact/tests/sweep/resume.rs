@@ -41,6 +41,33 @@ fn killed_at_any_time_it_continues_to_the_same_bytes() {
     assert_same(&bench.path("whole"), &bench.path("killed"));
 }
 
+/// The states of a folder in which a sweep was killed before its first rows: the folder alone, with the lock, with a part of the record,
+/// with the record, and with the header.
+#[test]
+fn a_sweep_killed_as_it_begins_continues() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
+    let record = bench.read("whole/sweep.json");
+    let header = bench.read("whole/results.csv")[..40].to_vec();
+    let states: [&[(&str, &[u8])]; 6] = [
+        &[],
+        &[("lock", &[])],
+        &[("lock", &[]), ("sweep.part", &record[..100])],
+        &[("lock", &[]), ("sweep.json", &record)],
+        &[("lock", &[]), ("sweep.json", &record), ("results.csv", &header)],
+        &[("lock", &[]), ("sweep.json", &record), ("results.csv", &header), ("progress.part", b"{")],
+    ];
+    for (i, state) in states.into_iter().enumerate() {
+        let out = format!("out-{i}");
+        fs::create_dir(bench.path(&out)).unwrap();
+        for (name, bytes) in state {
+            fs::write(bench.path(&out).join(name), bytes).unwrap();
+        }
+        bench.succeeds(&["sweep", "sweep.json", "--out", &out, "--quiet"]);
+        assert_same(&bench.path("whole"), &bench.path(&out));
+    }
+}
+
 #[test]
 fn a_torn_line_is_dropped() {
     let bench = Bench::new(&super::sweep());
@@ -93,6 +120,17 @@ fn a_finished_folder_is_checked_and_completed() {
     fs::write(bench.path("out/summary.json"), "{").unwrap();
     bench.succeeds(&arguments);
     assert_eq!(before, files(&bench.path("out")));
+    // a single byte changed, as by a disk, and a file cut short
+    for (name, bytes) in before.iter().filter(|(name, _)| !name.starts_with("results.csv") && !name.ends_with(".json"))
+    {
+        let mut changed = bytes.clone();
+        changed[bytes.len() / 2] ^= 1;
+        for damaged in [&changed[..], &bytes[..bytes.len() / 2], &[]] {
+            fs::write(bench.path("out").join(name), damaged).unwrap();
+            bench.succeeds(&arguments);
+            assert_eq!(before, files(&bench.path("out")), "{name}");
+        }
+    }
 
     let rows = bench.read("out/results.csv");
     for changed in [&rows[..rows.len() / 2], &[], &[&rows[..], b"1,2,3\n"].concat()] {
