@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
+use std::{fs, io};
 
 #[cfg(test)]
 mod circles;
@@ -20,7 +21,8 @@ mod workflows;
 
 type Failure = Box<dyn Error>;
 
-/// One call of cargo: its arguments, and the flags for rustdoc.
+/// One call of cargo: its arguments, where `FEATURES` and `PUBLISHED` stand for features and packages that are found out, and the flags
+/// for rustdoc.
 struct Step {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -69,32 +71,7 @@ const STEPS: [Step; 7] = [
     Step {
         // checks that each crate can be packed; the job `alone` of ci.yml also builds the packages
         name: "packages",
-        arguments: &[
-            "package",
-            "--quiet",
-            "--workspace",
-            "--exclude",
-            "xtask",
-            "--exclude",
-            "ci",
-            "--exclude",
-            "impactbench",
-            "--exclude",
-            "tasks",
-            "--exclude",
-            "record",
-            "--exclude",
-            "studies",
-            "--exclude",
-            "work-precision",
-            "--exclude",
-            "book-snippets",
-            "--exclude",
-            "third-parties",
-            "--no-verify",
-            "--allow-dirty",
-            "--locked",
-        ],
+        arguments: &["package", "--quiet", "PUBLISHED", "--no-verify", "--allow-dirty", "--locked"],
         rustdocflags: "",
     },
     Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
@@ -137,6 +114,7 @@ fn carry_out(step: &Step, root: &Path, mpi: bool) -> Result<(), Failure> {
         match *argument {
             "FEATURES" if mpi => command.args(["--features", "vibroimpact/mpi"]),
             "FEATURES" => &mut command,
+            "PUBLISHED" => command.args(published(root)?.iter().map(|name| format!("--package={name}"))),
             argument => command.arg(argument),
         };
     }
@@ -145,6 +123,15 @@ fn carry_out(step: &Step, root: &Path, mpi: bool) -> Result<(), Failure> {
     }
     let status = command.status()?;
     if status.success() { Ok(()) } else { Err(format!("{command:?} failed").into()) }
+}
+
+/// The packages that are published: those in `crates`, in folders of their names.
+fn published(root: &Path) -> io::Result<Vec<String>> {
+    let entries = fs::read_dir(root.join("crates"))?.collect::<io::Result<Vec<_>>>()?;
+    let packages = entries.iter().filter(|entry| entry.path().join("Cargo.toml").is_file());
+    let mut names: Vec<String> = packages.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Ok(names)
 }
 
 fn timed(name: &str, work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
