@@ -189,7 +189,8 @@ fn spread(directions: &[Direction], part: impl Fn(&Direction) -> f64, size: f64)
 }
 
 /// Eigenvalues and eigenvectors of a symmetric positive semidefinite matrix by Jacobi's rotations, which keep the relative accuracy of
-/// small eigenvalues where coordinates have different units (Demmel and Veselic 1992).
+/// small eigenvalues where coordinates have different units (Demmel and Veselic 1992). The reduction to a tridiagonal matrix, as in
+/// `nalgebra`, does not.
 fn eigen(matrix: &DMatrix<f64>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = matrix.nrows();
     let (mut a, mut v) = (matrix.clone(), DMatrix::<f64>::identity(n, n));
