@@ -22,6 +22,7 @@ use super::search::find_orbit_until;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 
 /// Change of the parameter for finite differences, relative to its range.
 const DIFFERENCE: f64 = 1e-6;
@@ -240,7 +241,7 @@ struct Follower<'a, F> {
     /// contacts with internal variables are open then.
     phase_part: f64,
     /// Those that were closed, at the latest phase or an earlier one.
-    remembering: Vec<usize>,
+    remembering: BTreeSet<usize>,
     /// On a branch that began at a period doubling: half the periods of the loads.
     half: Option<u32>,
     stop: &'a dyn Fn() -> bool,
@@ -254,7 +255,7 @@ where
 {
     fn new(build: F, settings: &'a BranchSettings, first: &Orbit, stop: &'a dyn Fn() -> bool) -> Follower<'a, F> {
         let phase_part = first.phase_s * f64::from(first.forcing_periods) / first.period_s;
-        Follower { build, settings, phase_part, remembering: Vec::new(), half: None, stop }
+        Follower { build, settings, phase_part, remembering: BTreeSet::new(), half: None, stop }
     }
 
     /// Follows the branch from an orbit along a tangent.
@@ -271,10 +272,7 @@ where
             let found = self.step(&current, &tangent, step)?;
             let found = match found {
                 Step::Found(next, iterations) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
-                Step::Remembers(contact) if !turned || !self.remembering.contains(&contact) => {
-                    if !self.remembering.contains(&contact) {
-                        self.remembering.push(contact);
-                    }
+                Step::Remembers(contact) if self.remembering.insert(contact) || !turned => {
                     turned = true;
                     if self.turn(&mut current, &mut tangent)? && asymmetry.is_some() {
                         asymmetry = self.asymmetry(&current)?;

@@ -18,6 +18,7 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::{fmt, iter};
 
@@ -339,7 +340,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
                 Err(outcome) => return Ok(Err(outcome)),
             }
         }
-        let all: Vec<usize> = (0..self.assembly.contacts.len()).collect();
+        let all: BTreeSet<usize> = (0..self.assembly.contacts.len()).collect();
         let by = match self.to_opening(&state, &all)? {
             Ok(by) => by,
             Err(outcome) => return Ok(Err(outcome)),
@@ -348,7 +349,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
     }
 
     /// The part of a period of the loads until the middle of the longest time at which these contacts are open; zero if there is none.
-    pub fn to_opening(&self, state: &DVector<f64>, contacts: &[usize]) -> Reached<f64> {
+    pub fn to_opening(&self, state: &DVector<f64>, contacts: &BTreeSet<usize>) -> Reached<f64> {
         let mut closed = Closed { contacts, intervals: Vec::new() };
         let reached = self.follow(state, self.settings.end_s, &mut closed)?;
         Ok(reached.map(|_| closed.middle_of_longest_gap(self.settings.end_s) / self.forcing_period_s))
@@ -474,7 +475,7 @@ impl Observer for Stoppable<'_> {
 
 /// When any of some contacts is closed.
 struct Closed<'a> {
-    contacts: &'a [usize],
+    contacts: &'a BTreeSet<usize>,
     intervals: Vec<(f64, f64)>,
 }
 
@@ -643,7 +644,7 @@ mod tests {
             PeriodMap::new(rattling(), &OrbitSettings { tolerance: 1e-12, ..OrbitSettings::default() }, &|| false)
                 .unwrap();
         let state = map.start();
-        let mut closed = Closed { contacts: &[0, 1, 2], intervals: Vec::new() };
+        let mut closed = Closed { contacts: &BTreeSet::from([0, 1, 2]), intervals: Vec::new() };
         map.follow(&state, map.period_s(), &mut closed).unwrap().unwrap();
         assert!(closed.intervals.len() > 2, "{:?}", closed.intervals);
         let scales = map.scales(&state, &map.apply(&state).unwrap().unwrap());

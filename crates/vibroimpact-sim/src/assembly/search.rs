@@ -11,6 +11,7 @@ use super::solution::{Motion, Observer, Outcome, Reason};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::DVector;
+use std::collections::BTreeSet;
 
 /// Returns after up to this many periods are reported.
 const MOST_PERIODS: usize = 16;
@@ -68,13 +69,12 @@ fn from_start<L: ContactLaw + Clone>(
         Ok(state) => state,
         Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
     };
-    let mut remembering = Vec::new();
+    let mut remembering = BTreeSet::new();
     loop {
-        let contact = match refine(&map, state.clone(), settings)? {
-            OrbitOutcome::Remembers { contact } if !remembering.contains(&contact) => contact,
+        match refine(&map, state.clone(), settings)? {
+            OrbitOutcome::Remembers { contact } if remembering.insert(contact) => {}
             found => return Ok(found),
-        };
-        remembering.push(contact);
+        }
         let turned = match map.to_opening(&state, &remembering)? {
             Ok(part) => map.turn(state, part)?,
             Err(outcome) => Err(outcome),
