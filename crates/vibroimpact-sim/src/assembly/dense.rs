@@ -19,8 +19,8 @@ pub(crate) struct Seen {
 /// An event of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Event {
-    /// Its surfaces meet. Surfaces that overlap at the start have met before.
-    Touch { overlaps: bool },
+    /// It closes: its surfaces meet. Surfaces that overlap at the start have met before.
+    Close { overlaps: bool },
     /// It crosses this boundary of its branch.
     Cross(usize),
 }

@@ -362,17 +362,17 @@ impl Solver<'_> {
             Ok(Changes { intervals, sides })
         };
         let changes = found.tangents.into_iter().zip(around).zip(changes).map(of).collect();
-        let (nearest_graze, nearest_miss) = nearest_graze(found.touches, nearest_miss);
+        let (nearest_graze, nearest_miss) = nearest_graze(found.closing_speeds_m_s, nearest_miss);
         Differences { run, intervals, changes, nearest_graze, nearest_miss }
     }
 }
 
-/// Speed of the slowest touch or of the nearest miss, divided by that of the fastest touch, and the miss if it is nearer; 1
-/// without a touch.
-pub(crate) fn nearest_graze([slowest, fastest]: [f64; 2], miss: Option<NearMiss>) -> (f64, Option<NearMiss>) {
-    let miss = miss.filter(|miss| miss.speed_m_s < slowest);
-    let slowest = miss.map_or(slowest, |miss| miss.speed_m_s);
-    (if fastest > 0.0 && slowest.is_finite() { slowest / fastest } else { 1.0 }, miss)
+/// The lowest speed at which a contact closed or the speed of the nearest miss, divided by the highest speed, and the miss if it is
+/// nearer; 1 if no contact closed.
+pub(crate) fn nearest_graze([lowest, highest]: [f64; 2], miss: Option<NearMiss>) -> (f64, Option<NearMiss>) {
+    let miss = miss.filter(|miss| miss.speed_m_s < lowest);
+    let lowest = miss.map_or(lowest, |miss| miss.speed_m_s);
+    (if highest > 0.0 && lowest.is_finite() { lowest / highest } else { 1.0 }, miss)
 }
 
 /// Derivatives of displacement and velocity of both sides of a contact at the end.

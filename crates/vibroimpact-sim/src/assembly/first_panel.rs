@@ -73,19 +73,19 @@ impl Forecast<'_, '_> {
 impl<'a> March<'a> {
     /// Step exponent of the longest panel on which a force that begins at first touch is represented within the tolerance.
     pub(super) fn level_at_touch(&self, c: usize) -> i32 {
-        let Some(touch) = self.states[c].touch() else { return J_MIN };
+        let Some(contact) = self.states[c].closed_contact() else { return J_MIN };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);
         series[0] = self.states[c].overlap;
         let sizes = series.map(f64::abs);
-        let forecast = Forecast { march: self, contact: c, branch: touch.branch, series, sizes };
+        let forecast = Forecast { march: self, contact: c, branch: contact.branch, series, sizes };
         let tolerance = self.impulse_tolerance(c);
-        let allowed = match touch.begins {
+        let allowed = match contact.begins {
             true => (tolerance * self.states[c].momentum / WEIGHTED).sqrt(),
             false => tolerance / SINGULAR,
         };
         let covered = if self.reach.is_finite() { self.tables.steps.level_within(4.0 * self.reach) } else { J_MIN };
         let level = first_level_where(covered, |j| forecast.impulse(j) <= allowed);
-        if level > covered || !touch.begins {
+        if level > covered || !contact.begins {
             return level;
         }
         // beyond the reach of the fastest modes the compression is extrapolated; they hardly matter to a force that is represented as it
@@ -102,9 +102,9 @@ impl<'a> March<'a> {
     /// the one to which a strong dashpot forces it. On longer panels the force would oscillate, and seem to end.
     pub(super) fn level_of_relaxation(&mut self, c: usize) -> i32 {
         let state = &self.states[c];
-        let Some(touch) = state.touch() else { return J_MIN };
+        let Some(contact) = state.closed_contact() else { return J_MIN };
         self.counts.law_evaluations += 1;
-        let drag = self.law(c).force(&touch.branch, state.overlap, state.rate).per_rate_n_s_m.abs();
+        let drag = self.law(c).force(&contact.branch, state.overlap, state.rate).per_rate_n_s_m.abs();
         self.tables.steps.level_within((drag * self.system.links[c].mobility).recip())
     }
 }

@@ -6,7 +6,7 @@ use super::event::{Beginning, EventFunction, Verdict};
 use super::interpolation::ORDERS;
 use super::motion::{Crossing, March};
 use super::rounding::MAGNIFIED;
-use super::state::Touch;
+use super::state::ClosedContact;
 use crate::panel::legendre::{Legendre, Nodal, Q, TAYLOR, slopes};
 
 /// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two. The sum is the
@@ -106,9 +106,9 @@ impl<'a> March<'a> {
                     }
                 }
             };
-            match state.touch() {
-                Some(touch) => {
-                    let rates = if touch.ends_by_rate { slopes(0.0, &moved[i], h) } else { [0.0; Q] };
+            match state.closed_contact() {
+                Some(contact) => {
+                    let rates = if contact.ends_by_rate { slopes(0.0, &moved[i], h) } else { [0.0; Q] };
                     for (which, boundary) in state.boundaries.iter().enumerate() {
                         let nodal = std::array::from_fn(|n| boundary.margin(state.overlap + moved[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
@@ -140,7 +140,7 @@ impl<'a> March<'a> {
     fn uncertainty(&self, c: usize, h: f64, rho: [f64; ORDERS], beyond: f64) -> Uncertainty {
         let (rounding, increase_rounding) = self.rounding_on_panel(c, h);
         let (residue, rate_residue) =
-            self.states[c].touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
+            self.states[c].closed_contact().map_or((0.0, 0.0), |contact| (contact.residue, contact.rate_residue));
         Uncertainty { h, rho, beyond, rounding, increase_rounding, residue, rate_residue }
     }
 
@@ -167,8 +167,9 @@ impl<'a> March<'a> {
         let by = |&other: &usize| {
             let (state, links) = (&self.states[other], &self.system.links);
             let weight: f64 = links[c].shared(&links[other]).map(|(_, weight)| weight).sum();
-            let force = |touch: &Touch| self.law(other).force(&touch.branch, state.overlap, state.rate).force_n;
-            weight * state.touch().map_or(0.0, force)
+            let force =
+                |contact: &ClosedContact| self.law(other).force(&contact.branch, state.overlap, state.rate).force_n;
+            weight * state.closed_contact().map_or(0.0, force)
         };
         free - closed.iter().map(by).sum::<f64>()
     }
@@ -190,7 +191,7 @@ impl<'a> March<'a> {
     /// The forces of closed contacts at the start of a panel.
     fn forces_of<'s>(&'s self, closed: &'s [usize]) -> impl Iterator<Item = ContactForce<'a>> + 's {
         let of = |c: &usize| {
-            let (force, h) = self.states[*c].touch()?.previous?;
+            let (force, h) = self.states[*c].closed_contact()?.previous?;
             let ([_, force_n], [_, slope]) = (force.at_ends(), force.slopes_at_ends());
             Some(ContactForce { link: &self.system.links[*c], force_n, rate_n_s: slope / h })
         };

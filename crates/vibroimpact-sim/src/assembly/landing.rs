@@ -110,7 +110,8 @@ impl<'a> March<'a> {
     /// along a parabola to the event.
     pub(super) fn accurate_length(&mut self, crossing: Crossing, left: f64) -> f64 {
         let state = &self.states[crossing.contact];
-        let Some((touch, (force, _))) = state.touch().and_then(|touch| Some((touch, touch.previous?))) else {
+        let Some((contact, (force, _))) = state.closed_contact().and_then(|contact| Some((contact, contact.previous?)))
+        else {
             return f64::INFINITY;
         };
         let (law, tolerance) = (self.law(crossing.contact), self.impulse_tolerance(crossing.contact));
@@ -122,7 +123,7 @@ impl<'a> March<'a> {
         let bend = boundary.level / boundary.per_compression - start - slope;
         let force = BASIS.nodes.map(|s| {
             let (compression, moved) = (start + s * (slope + s * bend), slope + 2.0 * s * bend);
-            law.force(&touch.branch, compression, moved / left).force_n
+            law.force(&contact.branch, compression, moved / left).force_n
         });
         self.counts.law_evaluations += Q as u64;
         let ends = self.ends_at(crossing);

@@ -176,7 +176,7 @@ impl<'a> March<'a> {
     /// Energy that the closed contacts store (J).
     pub(super) fn stored_j(&self) -> f64 {
         let of = |(state, law): (&State, &&dyn ContactLaw)| {
-            state.touch().map_or(0.0, |touch| law.stored_energy_j(&touch.branch, state.overlap))
+            state.closed_contact().map_or(0.0, |contact| law.stored_energy_j(&contact.branch, state.overlap))
         };
         self.states.iter().zip(self.laws).map(of).sum()
     }
@@ -201,7 +201,7 @@ impl<'a> March<'a> {
     pub(super) fn force_at(&mut self, c: usize, (compression, rate): (f64, f64)) -> f64 {
         self.counts.law_evaluations += 1;
         let law = self.law(c);
-        self.states[c].touch().map_or(0.0, |touch| law.force(&touch.branch, compression, rate).force_n)
+        self.states[c].closed_contact().map_or(0.0, |contact| law.force(&contact.branch, compression, rate).force_n)
     }
 
     /// Overlap of a contact and its rate, from modes and loads.
@@ -245,10 +245,10 @@ impl<'a> March<'a> {
     pub(super) fn error(&self, c: usize, force_n: f64, h: f64, (overlap, rate): (f64, f64)) -> f64 {
         let tolerance = self.impulse_tolerance(c);
         let error = force_n * h / tolerance;
-        match self.states[c].touch() {
-            Some(touch) if touch.force_by_rate && error * GROWTH >= 1.0 => {
+        match self.states[c].closed_contact() {
+            Some(contact) if contact.force_by_rate && error * GROWTH >= 1.0 => {
                 let reached = self.states[c].overlap + FARTHER * h * self.states[c].rate.abs();
-                let drag = self.law(c).force(&touch.branch, overlap.min(reached), rate).per_rate_n_s_m.abs();
+                let drag = self.law(c).force(&contact.branch, overlap.min(reached), rate).per_rate_n_s_m.abs();
                 (force_n - drag * self.rate_rounding_on_panel(c)).max(0.0) * h / tolerance
             }
             _ => error,

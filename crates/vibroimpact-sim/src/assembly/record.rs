@@ -68,7 +68,10 @@ impl<'a> March<'a> {
 
     fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Legendre], solved: &[Collocated]) -> Stretch {
         let forces = contacts.iter().zip(force).zip(solved);
-        let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
+        let seen = |state: &State| Seen {
+            reference: state.reference,
+            branch: state.closed_contact().map(|contact| contact.branch),
+        };
         Stretch {
             events: Vec::new(),
             start_s: self.time_s,

@@ -178,8 +178,8 @@ fn equilibrium(march: &March, closed: Vec<usize>) -> Option<Equilibrium> {
 
 /// Force of a closed contact at rest with this compression, and its slope.
 fn law_at(march: &March, c: usize, compression: f64) -> (f64, f64) {
-    let Some(touch) = march.states[c].touch() else { return (0.0, 0.0) };
-    let force = march.laws[c].force(&touch.branch, compression, 0.0);
+    let Some(contact) = march.states[c].closed_contact() else { return (0.0, 0.0) };
+    let force = march.laws[c].force(&contact.branch, compression, 0.0);
     (force.force_n, force.per_compression_n_m)
 }
 
@@ -190,8 +190,8 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
     }
     let stored = |i: usize, compression: f64| {
         let c = at.closed[i];
-        let touch = march.states[c].touch();
-        touch.map_or(0.0, |touch| march.laws[c].stored_energy_j(&touch.branch, compression))
+        let contact = march.states[c].closed_contact();
+        contact.map_or(0.0, |contact| march.laws[c].stored_energy_j(&contact.branch, compression))
     };
     let mut energy: f64 = march.rate.iter().map(|b| 0.5 * b * b).sum();
     for (k, mode) in system.modes.iter().enumerate().filter(|(_, mode)| !mode.is_rigid()) {
@@ -207,8 +207,8 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
     for (i, &c) in at.closed.iter().enumerate() {
         let still = at.compression[i];
         let term = |moved: f64| stored(i, still + moved) - stored(i, still) - at.force[i] * moved;
-        let touch = march.states[c].touch();
-        let opens_at = touch.and_then(|touch| opens_at(march.laws[c], &touch.branch, still, 1));
+        let contact = march.states[c].closed_contact();
+        let opens_at = contact.and_then(|contact| opens_at(march.laws[c], &contact.branch, still, 1));
         // the contact stays closed, and its displacement in the opening direction is smaller than that
         let Some(opening) = opens_at.map(|xi| xi - still).filter(|&opening| term(opening) > energy) else {
             return false;

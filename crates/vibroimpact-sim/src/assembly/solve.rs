@@ -190,7 +190,7 @@ fn contact_end(march: &March, c: usize) -> ContactEnd {
         stored_j: 0.0,
         remembers: match &state.phase {
             Phase::Open { memory, .. } => *memory != Memory::default(),
-            Phase::Closed(touch) => branch_at_start(law, state.overlap, state.rate) != Some(touch.branch),
+            Phase::Closed(contact) => branch_at_start(law, state.overlap, state.rate) != Some(contact.branch),
         },
     };
     for (i, side) in march.system.links[c].sides.iter().enumerate() {
@@ -200,9 +200,9 @@ fn contact_end(march: &March, c: usize) -> ContactEnd {
             end.velocity_m_s[i] = side.sum(&march.rate) + shift_rate;
         }
     }
-    if let Some(touch) = state.touch() {
-        end.force_n = law.force(&touch.branch, state.overlap, state.rate).force_n;
-        end.stored_j = law.stored_energy_j(&touch.branch, state.overlap);
+    if let Some(contact) = state.closed_contact() {
+        end.force_n = law.force(&contact.branch, state.overlap, state.rate).force_n;
+        end.stored_j = law.stored_energy_j(&contact.branch, state.overlap);
     }
     end
 }

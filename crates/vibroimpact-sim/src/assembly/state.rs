@@ -40,12 +40,12 @@ pub(crate) enum Phase {
         /// The bounds behind this time, as long as no force acts on its bodies.
         bounds: Option<Box<FlightBounds>>,
     },
-    Closed(Box<Touch>),
+    Closed(Box<ClosedContact>),
 }
 
 /// A contact that is closed.
 #[derive(Debug, Clone)]
-pub(crate) struct Touch {
+pub(crate) struct ClosedContact {
     pub branch: Branch,
     /// Whether a boundary of the branch depends on the rate.
     pub ends_by_rate: bool,
@@ -74,9 +74,9 @@ impl State {
 
     /// Scales of compression and speed of the contact: the largest so far, within the range of the laws.
     pub fn scales(&self) -> Option<(f64, f64)> {
-        let touch = self.touch()?;
-        let compression = touch.peak_compression.at_nodes().max(self.overlap);
-        let speed = touch.interval.approach_speed_m_s.max(self.rate.abs());
+        let contact = self.closed_contact()?;
+        let compression = contact.peak_compression.at_nodes().max(self.overlap);
+        let speed = contact.interval.approach_speed_m_s.max(self.rate.abs());
         let within = |value: f64| (1e-30..=1e10).contains(&value);
         // for a contact that has just begun, the distance covered at its speed in a microsecond
         let compression = if within(compression) { compression } else { 1e-6 * speed };
@@ -97,19 +97,19 @@ impl State {
 
     /// Whether the contact is closed, and its force may depend on the rate.
     pub fn force_by_rate(&self) -> bool {
-        self.touch().is_some_and(|touch| touch.force_by_rate)
+        self.closed_contact().is_some_and(|contact| contact.force_by_rate)
     }
 
-    pub fn touch(&self) -> Option<&Touch> {
+    pub fn closed_contact(&self) -> Option<&ClosedContact> {
         match &self.phase {
-            Phase::Closed(touch) => Some(touch),
+            Phase::Closed(contact) => Some(contact),
             Phase::Open { .. } => None,
         }
     }
 
-    pub fn touch_mut(&mut self) -> Option<&mut Touch> {
+    pub fn closed_contact_mut(&mut self) -> Option<&mut ClosedContact> {
         match &mut self.phase {
-            Phase::Closed(touch) => Some(touch),
+            Phase::Closed(contact) => Some(contact),
             Phase::Open { .. } => None,
         }
     }
@@ -128,12 +128,12 @@ impl State {
         let Collocated { force: nodal, ends, compression, .. } = solved;
         let work_j = self.work_j(&force, compression, end);
         let ends_of_rate = [self.rate, end_rate];
-        let Phase::Closed(touch) = &mut self.phase else { return };
-        touch.begins = false;
-        touch.previous = Some((force, h));
-        touch.interval.impulse_n_s += h * force.mean();
-        touch.peak_force.note(nodal, *ends);
-        touch.peak_compression.note(compression, Ends::SMOOTH);
+        let Phase::Closed(contact) = &mut self.phase else { return };
+        contact.begins = false;
+        contact.previous = Some((force, h));
+        contact.interval.impulse_n_s += h * force.mean();
+        contact.peak_force.note(nodal, *ends);
+        contact.peak_compression.note(compression, Ends::SMOOTH);
         let statistics = &mut self.statistics;
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * force.mean();
@@ -151,25 +151,25 @@ impl State {
     /// Begins the statistics anew, with the rest of an interval of contact.
     pub fn begin_statistics(&mut self) {
         self.statistics = Statistics::default();
-        if let Some(touch) = self.touch_mut() {
-            touch.interval.peak_force_n = touch.peak_force.value().max(touch.interval.peak_force_n);
-            touch.peak_force = Peak::NONE;
+        if let Some(contact) = self.closed_contact_mut() {
+            contact.interval.peak_force_n = contact.peak_force.value().max(contact.interval.peak_force_n);
+            contact.peak_force = Peak::NONE;
         }
     }
 
     /// The interval that ends now.
     pub fn finish(&mut self, released: Option<(f64, f64)>) -> Option<Interval> {
-        let Phase::Closed(touch) = &mut self.phase else { return None };
-        let peak_force_n = touch.peak_force.value();
-        touch.interval.peak_force_n = peak_force_n.max(touch.interval.peak_force_n);
-        touch.interval.peak_compression_m = touch.peak_compression.value();
+        let Phase::Closed(contact) = &mut self.phase else { return None };
+        let peak_force_n = contact.peak_force.value();
+        contact.interval.peak_force_n = peak_force_n.max(contact.interval.peak_force_n);
+        contact.interval.peak_compression_m = contact.peak_compression.value();
         if let Some((time_s, rate)) = released {
-            touch.interval.end_s = Some(time_s);
-            touch.interval.separation_speed_m_s = Some(-rate);
+            contact.interval.end_s = Some(time_s);
+            contact.interval.separation_speed_m_s = Some(-rate);
         }
         self.statistics.intervals += 1;
         self.statistics.largest_force_n = self.statistics.largest_force_n.max(peak_force_n);
-        Some(touch.interval)
+        Some(contact.interval)
     }
 }
 

@@ -80,7 +80,7 @@ impl Link {
     }
 
     /// Whether both join the same body.
-    pub fn touches(&self, other: &Link) -> bool {
+    pub fn shares_body_with(&self, other: &Link) -> bool {
         self.spans.iter().any(|span| other.span(&span.modes).is_some())
     }
 }
@@ -144,7 +144,7 @@ impl System {
             System { modes, omega, drag, square, inverse, turning, most_damping, bodies, place, links, neighbours };
         system.links = posed.sides.iter().map(|sides| system.link(sides)).collect();
         let links = &system.links;
-        let sharing = |one: &Link| (0..links.len()).filter(|&c| one.touches(&links[c])).collect();
+        let sharing = |one: &Link| (0..links.len()).filter(|&c| one.shares_body_with(&links[c])).collect();
         system.neighbours = links.iter().map(sharing).collect();
         system
     }

@@ -5,7 +5,7 @@ use super::dense::Event;
 use super::enclosure::first_difference;
 use super::motion::{Crossing, March};
 use super::solution::Interval;
-use super::state::{Phase, State, Touch};
+use super::state::{ClosedContact, Phase, State};
 use super::terminal::series_of;
 use crate::panel::ends::EXPONENT;
 use crate::panel::peak::Peak;
@@ -75,8 +75,8 @@ impl<'a> March<'a> {
             let Some(boundary) = boundaries.iter().position(|end| end.margin(*overlap, *rate) < 0.0) else { return };
             self.transition(Crossing { contact: c, boundary });
             // unlike a boundary that was located, these may be far behind
-            if let Some(touch) = self.states[c].touch_mut() {
-                (touch.residue, touch.rate_residue) = (0.0, 0.0);
+            if let Some(contact) = self.states[c].closed_contact_mut() {
+                (contact.residue, contact.rate_residue) = (0.0, 0.0);
             }
         }
     }
@@ -118,7 +118,7 @@ impl<'a> March<'a> {
         let branch = law.touch(&memory, state.rate.max(0.0));
         // of surfaces that overlap at the start
         let stored_j = if beyond > 0.0 { law.stored_energy_j(&branch, state.overlap) } else { 0.0 };
-        state.phase = Phase::Closed(Box::new(Touch {
+        state.phase = Phase::Closed(Box::new(ClosedContact {
             branch,
             ends_by_rate: false,
             force_by_rate: true,
@@ -135,17 +135,19 @@ impl<'a> March<'a> {
         // of forces that begin together, a small change lets one begin within the panel of the other
         let others = self.states.iter_mut().enumerate().filter(|(other, _)| *other != c);
         let mut together = false;
-        for touch in others.filter_map(|(_, other)| other.touch_mut()).filter(|touch| touch.previous.is_none()) {
-            (touch.begins, together) = (false, true);
+        for contact in
+            others.filter_map(|(_, other)| other.closed_contact_mut()).filter(|contact| contact.previous.is_none())
+        {
+            (contact.begins, together) = (false, true);
         }
         let begins = beyond == 0.0 && !together && self.begins_singular(c);
-        if let Some(touch) = self.states[c].touch_mut() {
-            touch.begins = begins;
+        if let Some(contact) = self.states[c].closed_contact_mut() {
+            contact.begins = begins;
         }
         let first = self.level_at_touch(c);
         let alone = self.states.iter().filter(|state| state.is_closed()).count() == 1;
         self.level = if alone { first } else { self.level.max(first) };
-        self.event(c, Event::Touch { overlaps: beyond > 0.0 });
+        self.event(c, Event::Close { overlaps: beyond > 0.0 });
     }
 
     fn enter(&mut self, c: usize, branch: Branch) {
@@ -153,14 +155,14 @@ impl<'a> March<'a> {
         let state = &mut self.states[c];
         state.boundaries.clear();
         state.boundaries.extend(boundaries(law, &branch));
-        if let Phase::Closed(touch) = &mut state.phase {
-            touch.branch = branch;
-            touch.ends_by_rate = state.boundaries.iter().any(|boundary| boundary.per_rate != 0.0);
-            touch.begins = false;
+        if let Phase::Closed(contact) = &mut state.phase {
+            contact.branch = branch;
+            contact.ends_by_rate = state.boundaries.iter().any(|boundary| boundary.per_rate != 0.0);
+            contact.begins = false;
         }
         let by_rate = self.depends_on_rate(c);
-        if let Some(touch) = self.states[c].touch_mut() {
-            touch.force_by_rate = by_rate;
+        if let Some(contact) = self.states[c].closed_contact_mut() {
+            contact.force_by_rate = by_rate;
         }
         let mut vanishes = std::mem::take(&mut self.states[c].vanishes);
         vanishes.clear();
@@ -177,7 +179,7 @@ impl<'a> March<'a> {
     /// that is not zero.
     fn depends_on_rate(&mut self, c: usize) -> bool {
         let (state, law) = (&self.states[c], self.law(c));
-        let (Some(touch), Some((scale, speed))) = (state.touch(), state.scales()) else { return true };
+        let (Some(contact), Some((scale, speed))) = (state.closed_contact(), state.scales()) else { return true };
         // the branch begins on a boundary, beyond which the law only continues it
         let beside = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(by_overlap, by_rate)| {
             (state.overlap + by_overlap * NEAR * scale, state.rate + by_rate * NEAR * speed)
@@ -186,7 +188,7 @@ impl<'a> March<'a> {
             |(overlap, rate): &(f64, f64)| state.boundaries.iter().all(|end| end.margin(*overlap, *rate) > 0.0);
         let Some((overlap, rate)) = beside.into_iter().find(within) else { return true };
         self.counts.law_evaluations += 1;
-        let force = law.force(&touch.branch, overlap, rate);
+        let force = law.force(&contact.branch, overlap, rate);
         force.force_n == 0.0 || force.per_rate_n_s_m != 0.0
     }
 
@@ -208,16 +210,16 @@ impl<'a> March<'a> {
     pub(super) fn transition(&mut self, crossing: Crossing) {
         let c = crossing.contact;
         let law = self.law(c);
-        let Some(touch) = self.states[c].touch() else {
+        let Some(contact) = self.states[c].closed_contact() else {
             return self.close(c, 0.0);
         };
         let Some(&boundary) = self.states[c].boundaries.get(crossing.boundary) else { return };
         let (residue, rate_residue) = self.states[c].beside(&boundary);
-        match law.cross(&touch.branch, crossing.boundary, self.states[c].overlap, self.states[c].rate) {
+        match law.cross(&contact.branch, crossing.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
                 self.enter(c, branch);
-                if let Some(touch) = self.states[c].touch_mut() {
-                    (touch.residue, touch.rate_residue) = (residue, rate_residue);
+                if let Some(contact) = self.states[c].closed_contact_mut() {
+                    (contact.residue, contact.rate_residue) = (residue, rate_residue);
                 }
                 let relaxed = self.level_of_relaxation(c);
                 self.level = self.level.max(relaxed);
@@ -227,7 +229,7 @@ impl<'a> March<'a> {
                 let (overlap, _) = self.overlap_of_modes(c);
                 let (now, rate) = (self.time_s, self.states[c].rate);
                 // surfaces that part where they have met, under the forces of other contacts, were not in contact
-                let lasted = touch.interval.start_s < now;
+                let lasted = contact.interval.start_s < now;
                 if lasted && let Some(interval) = self.states[c].finish(Some((now, rate))) {
                     self.observer.interval(c, &interval);
                     self.intervals += 1;

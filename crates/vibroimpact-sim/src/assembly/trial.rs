@@ -113,15 +113,15 @@ impl<'a> March<'a> {
     ) -> impl Iterator<Item = Unknown<'a>> + 's {
         let unknown = move |(i, &c): (usize, &usize)| {
             let state = &self.states[c];
-            let touch = state.touch()?;
-            let guess = touch.previous.map_or([0.0; Q], |(force, length)| {
+            let contact = state.closed_contact()?;
+            let guess = contact.previous.map_or([0.0; Q], |(force, length)| {
                 let ahead = if h <= FARTHEST * length { h / length } else { 0.0 };
                 force.at_each(&BASIS.nodes.map(|s| 1.0 + s * ahead)).map(|force| force.max(0.0))
             });
             let (free, free_rate) = free(i);
             Some(Unknown {
                 law: self.law(c),
-                branch: touch.branch,
+                branch: contact.branch,
                 start: state.overlap,
                 free,
                 free_rate,
@@ -135,7 +135,7 @@ impl<'a> March<'a> {
 
     /// How the force of a closed contact begins on a panel from here on.
     pub(super) fn begins(&self, c: usize) -> Ends {
-        Ends { at_start: self.states[c].touch().is_some_and(|touch| touch.begins), at_end: false }
+        Ends { at_start: self.states[c].closed_contact().is_some_and(|contact| contact.begins), at_end: false }
     }
 
     /// Increase of the overlap of a contact up to the nodes without contact forces, and its rate if the force may depend on it.

@@ -111,7 +111,7 @@ pub struct Differentiated {
     pub nearest_miss: Option<NearMiss>,
 }
 
-/// Derivatives for each parameter, and the speeds of the slowest and of the fastest touch.
+/// Derivatives for each parameter, and the lowest and the highest speed at which a contact closed.
 type AllChanges = (Vec<Result<Changes, NoDerivative>>, [f64; 2]);
 
 /// Derivatives along one run with respect to one parameter.
@@ -200,7 +200,7 @@ impl Solver {
             || self.along(BESIDE, impact, &around, &lowered, &coarser),
             || self.along(ANSWER, impact, &around, &lowered, &fine),
         );
-        let (changes, touches) = match found {
+        let (changes, closing_speeds_m_s) = match found {
             Ok(found) => found,
             Err(why) => return Ok(none(solution, why)),
         };
@@ -215,7 +215,7 @@ impl Solver {
             Ok(fine.beside(coarse, &solution, known, by_impulse))
         };
         let derivatives = changes.into_iter().enumerate().map(of).collect();
-        let (nearest_graze, nearest_miss) = nearest_graze(touches, fine.record.nearest_miss);
+        let (nearest_graze, nearest_miss) = nearest_graze(closing_speeds_m_s, fine.record.nearest_miss);
         Ok(Differentiated { solution, derivatives, nearest_graze, nearest_miss })
     }
 
@@ -254,7 +254,7 @@ impl Solver {
             let numbers = [restitution, tangent.time_s, velocities[1]];
             Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
         };
-        Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.touches))
+        Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.closing_speeds_m_s))
     }
 
     /// The modes that the contact excites, or that move it before the impact, at the value itself or at a neighbour.

@@ -79,7 +79,7 @@ impl Walk<'_> {
     ) -> Result<(f64, f64), NoDerivative> {
         let change = self.overlap(d, contact, time_s, state, moved);
         // bodies that rest against each other from the start do so after any change that leaves their distance as it is
-        if time_s == 0.0 && speed[0] == 0.0 && matches!(event, Event::Touch { .. }) {
+        if time_s == 0.0 && speed[0] == 0.0 && matches!(event, Event::Close { .. }) {
             let moves = self.moves(d, contact, time_s, change[0], [state[0], moved[0]]);
             return if !moves { Ok((0.0, 0.0)) } else { Err(NoDerivative::Graze { contact, time_s }) };
         }
@@ -99,7 +99,7 @@ impl Walk<'_> {
         speed: [f64; 2],
     ) -> Vec<f64> {
         let jumps = match event {
-            Event::Touch { .. } => {
+            Event::Close { .. } => {
                 let law = self.posed.laws[c];
                 let branch = law.touch(&self.contacts[c].memory, overlap[1].max(0.0));
                 law.force(&branch, overlap[0], overlap[1]).force_n != 0.0
@@ -235,7 +235,7 @@ impl Walk<'_> {
             let [by_overlap, by_rate] = array::from_fn(|i| at_first[i] + apart[d] * speed[i]);
             let changes: Given = match event {
                 Event::Cross(_) => join(carried.branch, [by_overlap, by_rate]),
-                Event::Touch { .. } => join(carried.memory, [by_rate, 0.0]),
+                Event::Close { .. } => join(carried.memory, [by_rate, 0.0]),
             };
             let mut made_change = || {
                 let mut made_change = [0.0; NUMBERS];
@@ -257,7 +257,7 @@ impl Walk<'_> {
             let tangent = &mut self.tangents[d];
             let time_s = tangent.time_s + apart[d];
             match (event, &after) {
-                (Event::Touch { .. }, _) => {
+                (Event::Close { .. }, _) => {
                     let start = IntervalChange { contact: c, start_s: time_s, end_s: time_s, ..Default::default() };
                     tangent.intervals.push(IntervalChange { approach_speed_m_s: by_rate, ..start });
                     tangent.contacts[c].branch = made_change;
@@ -271,12 +271,12 @@ impl Walk<'_> {
                 }
             }
         }
-        if let Event::Touch { overlaps } = event {
+        if let Event::Close { overlaps } = event {
             // bodies that rest against each other from the start do not graze
             let rests = at_s == 0.0 && rate <= 0.0;
             let speed = rate.max(0.0);
-            self.touches =
-                [if rests { self.touches[0] } else { self.touches[0].min(speed) }, self.touches[1].max(speed)];
+            let [lowest, highest] = self.closing_speeds_m_s;
+            self.closing_speeds_m_s = [if rests { lowest } else { lowest.min(speed) }, highest.max(speed)];
             let followed = &mut self.contacts[c];
             (followed.interval, followed.since_s) = (self.begun, at_s);
             self.begun += 1;

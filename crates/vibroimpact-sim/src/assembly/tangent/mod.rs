@@ -64,8 +64,8 @@ pub(crate) struct Tangents {
     /// The motion itself at the end.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
-    /// Speed of the slowest touch, infinite without any, and of the fastest.
-    pub touches: [f64; 2],
+    /// The lowest speed at which a contact closed, infinite if none did, and the highest.
+    pub closing_speeds_m_s: [f64; 2],
 }
 
 /// The condition that determines the end of a panel.
@@ -130,7 +130,12 @@ pub(crate) fn tangents(
             None => Err(NoDerivative::Infinite),
         }
     };
-    Ok(Tangents { tangents: walk.tangents.into_iter().map(known).collect(), amplitude, rate, touches: walk.touches })
+    Ok(Tangents {
+        tangents: walk.tangents.into_iter().map(known).collect(),
+        amplitude,
+        rate,
+        closing_speeds_m_s: walk.closing_speeds_m_s,
+    })
 }
 
 impl Walk<'_> {
@@ -294,7 +299,7 @@ impl Walk<'_> {
         for (i, (c, event)) in next.events.iter().enumerate() {
             let speed = slide.map_or([0.0; 2], |slide| self.speed(*c, time_s, slide));
             // branches that surfaces pass because they overlap at the start are not located
-            let is_located = time_s > 0.0 || matches!(event, Event::Touch { overlaps: false });
+            let is_located = time_s > 0.0 || matches!(event, Event::Close { overlaps: false });
             let apart = match slide {
                 Some(_) if i > 0 && is_located => self.apart(*c, *event, (time_s, state), overlaps[*c], speed),
                 _ => vec![0.0; self.changes.len()],
@@ -348,7 +353,7 @@ impl Walk<'_> {
 /// The condition that ends the panel before a stretch, apart from loads: the first event at its start.
 fn ending(next: &Stretch) -> Ending {
     match next.events.first() {
-        Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,
+        Some((_, Event::Close { overlaps: true })) | None => Ending::Length,
         Some((c, event)) => Ending::Event(*c, *event),
     }
 }

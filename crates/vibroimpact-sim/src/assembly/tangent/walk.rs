@@ -110,9 +110,9 @@ pub(super) struct Walk<'a> {
     pub tangents: Vec<Tangent>,
     /// Memory for each parameter's derivatives on a panel.
     pub moved: Vec<Moved>,
-    /// Intervals begun so far, the slowest touch and the fastest.
+    /// Intervals begun so far, and the lowest and the highest speed at which a contact closed.
     pub begun: usize,
-    pub touches: [f64; 2],
+    pub closing_speeds_m_s: [f64; 2],
 }
 
 pub(super) fn sum(spans: &[Span], values: &[f64]) -> f64 {
@@ -162,7 +162,7 @@ impl<'a> Walk<'a> {
             tangents,
             moved: changes.iter().map(|_| Moved::default()).collect(),
             begun: 0,
-            touches: [f64::INFINITY, 0.0],
+            closing_speeds_m_s: [f64::INFINITY, 0.0],
         }
     }
 
