@@ -1,10 +1,10 @@
 //! Which of several numbers makes what follows from them too large or too small.
 
-/// Of several fields with their values, the one whose value is farthest from 1, as a factor; of equally far ones the first, and `None`
-/// if there are none. This is the field to name if a product of powers of the values is out of range.
+/// Of several fields with their values, the one whose value is farthest from 1, as a factor; of equally far ones the first, and
+/// `None` if there are none. This is the field to name if a product of powers of the values is out of range.
 ///
-/// Signs do not count. Zero and infinity are infinitely far, and NaN is farther still. If usual values of the fields differ by orders of
-/// magnitude, divide each value by its usual one.
+/// Signs do not count. Zero and infinity are infinitely far, and NaN is farther still. If usual values of the fields differ by
+/// orders of magnitude, divide each value by its usual one.
 ///
 /// ```
 /// use invalid_input::most_extreme;

@@ -21,8 +21,8 @@ mod workflows;
 
 type Failure = Box<dyn Error>;
 
-/// One call of cargo: its arguments, where `FEATURES` and `PUBLISHED` stand for features and packages that are found out, and the flags
-/// for rustdoc.
+/// One call of cargo: its arguments, where `FEATURES` and `PUBLISHED` stand for features and packages that are found out, and the
+/// flags for rustdoc.
 struct Step {
     name: &'static str,
     arguments: &'static [&'static str],

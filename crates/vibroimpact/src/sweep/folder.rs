@@ -226,8 +226,8 @@ fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
     Ok(Some(sum.finalize()))
 }
 
-/// Whether this sweep has begun in the folder. If it has not, a process may have been stopped before it wrote the record: the folder is
-/// then empty, or has no files but the lock and a part of the record.
+/// Whether this sweep has begun in the folder. If it has not, a process may have been stopped before it wrote the record: the
+/// folder is then empty, or has no files but the lock and a part of the record.
 ///
 /// # Errors
 /// The folder is that of another sweep, or of something else.

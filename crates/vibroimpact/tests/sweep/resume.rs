@@ -41,8 +41,8 @@ fn killed_at_any_time_it_continues_to_the_same_bytes() {
     assert_same(&bench.path("whole"), &bench.path("killed"));
 }
 
-/// The states of a folder in which a sweep was killed before its first rows: the folder alone, with the lock, with a part of the record,
-/// with the record, and with the header.
+/// The states of a folder in which a sweep was killed before its first rows: the folder alone, with the lock, with a part of the
+/// record, with the record, and with a part of the header.
 #[test]
 fn a_sweep_killed_as_it_begins_continues() {
     let bench = Bench::new(&super::sweep());
