@@ -128,7 +128,7 @@ fn a_finished_folder_is_checked_and_completed() {
         for damaged in [&changed[..], &bytes[..bytes.len() / 2], &[]] {
             fs::write(bench.path("out").join(name), damaged).unwrap();
             bench.succeeds(&arguments);
-            assert_eq!(before, files(&bench.path("out")), "{name}");
+            assert!(before == files(&bench.path("out")), "{name} was not made again");
         }
     }
 
