@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_ball_that_touches_once_gains_by_its_derivatives() {
-        let draws = draws(BALLS[0].0, BALLS[0].1, "random", 2048, &Progress::of("impacts")).unwrap();
+        let draws = draws(BALLS[0].0, BALLS[0].1, "random", 512, &Progress::of("impacts")).unwrap();
         assert!(draws.iter().all(|draw| draw.contacts == 1));
         let row = row(BALLS[0].0, "random", &draws);
         let gain: f64 = row.split('|').nth(5).unwrap().trim().parse().unwrap();

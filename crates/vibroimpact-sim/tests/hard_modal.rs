@@ -669,7 +669,7 @@ fn a_contact_within_rounding_gains_no_energy() {
                 let structure = Structure { modes: vec![Mode { omega_rad_s: 92.0, damping_ratio: 0.036, shape }] };
                 let striker = Striker { mass_kg, speed_m_s: 120.0 };
                 let law = Law::from(KelvinVoigt::new(8.5e7, damping_n_s_m).unwrap());
-                let settings = Settings { max_steps: 20_000, ..settings(1e-8) };
+                let settings = Settings { max_steps: 20_000, estimate_uncertainty: false, ..settings(1e-8) };
                 let solution = Solver::new(&structure).unwrap().solve(&striker, &law, None, &settings).unwrap();
                 let kept = energy_kept(&structure, &striker, &solution);
                 assert!(kept <= 1.0 + settings.tolerance, "{mass_kg} {damping_n_s_m} {shape}: energy times {kept}");

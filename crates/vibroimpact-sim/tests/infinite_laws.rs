@@ -215,10 +215,14 @@ fn agrees_with_a_trapezoidal_march() {
         for (law, force) in &cases {
             let (end, steps) = (16.0, 1600);
             let solution = solve_law(&power(p), &UNIT, law, &Settings { horizon: end, ..Settings::default() }).unwrap();
+            // at the same times for any number of steps
+            let times: Vec<f64> = (1..=400).map(|i| end * f64::from(i) / 400.0).collect();
+            let forces: Vec<f64> =
+                times.iter().map(|t| solution.at(*t).map_or(f64::NAN, |state| state.force)).collect();
             let error = |f: &[f64]| {
-                let h = end / (f.len() - 1) as f64;
-                let at = |n: usize| solution.at(h * n as f64).map_or(f64::NAN, |state| state.force);
-                (1..f.len()).map(|n| h * (at(n) - f[n]).abs()).sum::<f64>()
+                let every = (f.len() - 1) / times.len();
+                let marched = f.iter().step_by(every).skip(1);
+                forces.iter().zip(marched).map(|(force, marched)| end / 400.0 * (force - marched).abs()).sum::<f64>()
             };
             let (coarse, fine) = (error(&march(p, force, end, steps)), error(&march(p, force, end, 2 * steps)));
             // The remaining difference is the error of the trapezoidal method: it decreases as its step does, most slowly after
