@@ -1,39 +1,36 @@
 //! Products of power series by the fast Fourier transform.
 
+// A planner of any length and vector unit would be most of the code of this crate.
+use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
-use std::sync::Arc;
+use rustfft::{Fft, FftDirection, Length};
 
 /// The Fourier transform of a sequence.
 pub(crate) type Spectrum = Vec<Complex<f64>>;
 
-/// Forward and inverse transforms of one length.
-#[derive(Clone)]
-pub(crate) struct Transform {
-    forward: Arc<dyn Fft<f64>>,
-    backward: Arc<dyn Fft<f64>>,
-    length: usize,
-}
+/// Transforms of one length.
+pub(crate) struct Transform(Radix4<f64>);
 
 impl Transform {
-    /// Transforms of `length >= 1` values.
+    /// Transforms of so many values, a power of two.
     pub fn new(length: usize) -> Transform {
-        let mut planner = FftPlanner::new();
-        Transform { forward: planner.plan_fft_forward(length), backward: planner.plan_fft_inverse(length), length }
+        Transform(Radix4::new(length, FftDirection::Forward))
     }
 
     /// The spectrum of real values, padded with zeros.
     pub fn spectrum(&self, values: &[f64]) -> Spectrum {
         let mut buffer: Spectrum = values.iter().map(|&v| Complex::new(v, 0.0)).collect();
-        buffer.resize(self.length, Complex::new(0.0, 0.0));
-        self.forward.process(&mut buffer);
+        buffer.resize(self.0.len(), Complex::new(0.0, 0.0));
+        self.0.process(&mut buffer);
         buffer
     }
 
     /// The real values of a spectrum.
     pub fn values(&self, mut spectrum: Spectrum) -> Vec<f64> {
-        self.backward.process(&mut spectrum);
-        let scale = 1.0 / self.length as f64;
+        // the inverse transform is the conjugate of the transform of the conjugate
+        spectrum.iter_mut().for_each(|c| *c = c.conj());
+        self.0.process(&mut spectrum);
+        let scale = 1.0 / spectrum.len() as f64;
         spectrum.iter().map(|c| c.re * scale).collect()
     }
 }

@@ -1,7 +1,8 @@
 //! The figure of a run.
 
-use rustfft::FftPlannerScalar;
+use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 
 use super::{Course, Simulation};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
@@ -139,10 +140,13 @@ fn spectrum(found: &Simulation, course: &Course, contacts: &[usize]) -> Panel {
         let hann = |i: usize| 1.0 - (std::f64::consts::TAU * i as f64 / count as f64).cos();
         let mut turned: Vec<Complex<f64>> =
             values.iter().enumerate().map(|(i, value)| Complex::new((value - mean) * hann(i), 0.0)).collect();
-        FftPlannerScalar::new().plan_fft_forward(count).process(&mut turned);
-        let duration_s = count as f64 * samples.step_s;
+        // zeros beyond the samples interpolate their spectrum
+        let padded = count.next_power_of_two();
+        turned.resize(padded, Complex::default());
+        Radix4::new(padded, FftDirection::Forward).process(&mut turned);
+        let duration_s = padded as f64 * samples.step_s;
         let of = |i: usize| (i as f64 / duration_s, 2.0 * turned[i].norm() / count as f64);
-        let (frequency, amplitude): (Vec<f64>, Vec<f64>) = (1..count / 2).map(of).unzip();
+        let (frequency, amplitude): (Vec<f64>, Vec<f64>) = (1..padded / 2).map(of).unzip();
         panel.with(Series::line(&frequency, &amplitude).colour(Colour::of_series(number)).line_width(0.8))
     })
 }
