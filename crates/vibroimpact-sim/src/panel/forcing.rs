@@ -10,7 +10,8 @@
 //! - beyond that by parts: `int_0^c e^{z(c-s)} f(s) ds = e^{zc} sum f^(k)(0)/z^{k+1} - sum f^(k)(c)/z^{k+1}`, which
 //!   ends after `Q` terms, since `f` is a polynomial. The second sum of all modes together needs only `Q` numbers; the first
 //!   is a product of two short vectors for each mode;
-//! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series apply.
+//! - near critical damping and above it, where roots may coincide, one node after the other unless the series apply: by
+//!   quadrature or, if the roots are apart, as two decays.
 
 use super::lanes::{ComplexLanes, Lanes};
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
