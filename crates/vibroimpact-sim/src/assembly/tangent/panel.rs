@@ -1,7 +1,7 @@
 //! Derivatives of the modes and of the forces on one panel, without shifts of events.
 
 use super::expansion::Expansion;
-use super::walk::{LAW_STEP, Moved, Walk, shifted, size_of};
+use super::walk::{LAW_STEP, Moved, Walk, numbers, shifted, size_of};
 use crate::assembly::collocate::Mobility;
 use crate::assembly::dense::{Acting, Stretch};
 use crate::assembly::stencil::Stencil;
@@ -343,8 +343,14 @@ impl Walk<'_> {
         for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
             let size = size_of(&own.branch, which, &self.contacts[c]);
             for i in 0..Q {
-                // a law may have a kink at its anchor, which the neighbouring values must not cross
-                let apart = if which == 0 { (own.compression[i] - own.branch.anchor_m).abs() } else { size };
+                // a law may have a kink at its anchor, which the neighbouring values must not cross, and depend on how far another
+                // number is from the anchor
+                let other = if which == 0 {
+                    own.compression[i]
+                } else {
+                    numbers(own.branch.anchor_m, own.branch.internal)[which]
+                };
+                let apart = (other - own.branch.anchor_m).abs();
                 let step = (ANCHOR_STEP * apart).clamp(LEAST_LAW_STEP * size, LAW_STEP * size);
                 let stencil = Stencil::central(step);
                 let forces = stencil.offsets.map(|offset| at(law, &shifted(&own.branch, which, offset), i));
