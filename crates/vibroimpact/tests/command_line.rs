@@ -91,6 +91,23 @@ fn simulate_without_json_is_for_readers() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
+/// A mode that takes hours to come back: its second contact lasts a millionth of a millionth of that.
+#[test]
+fn times_of_many_digits_keep_their_columns_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [1e-4], "shape_at_location": [1] },
+        "striker": { "mass_kg": 10, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e12 }
+    });
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    let text = stdout(&run(folder.path(), &["simulate", "scene.json"]));
+    let second = text.lines().find(|line| line.starts_with("    2 ")).unwrap();
+    let words: Vec<&str> = second.split_whitespace().collect();
+    assert_eq!(words.len(), 12, "{text}");
+    assert!(words[1].len() >= 12 && words[2] == "ks" && words[4] == "ks", "{text}");
+}
+
 /// A free body that moves away faster than the ball approaches.
 #[test]
 fn bodies_that_never_meet_are_a_result_with_its_files() {

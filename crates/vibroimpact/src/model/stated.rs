@@ -75,14 +75,14 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
         (impact.solve_with(kept)?.0, None)
     };
     cost.add(&solution.counts, impact.structure.modes.len());
-    let count = impact.kept_modes();
+    let modes = counted(impact.kept_modes() as u64, "mode", "modes");
     let reason = match scene.modes {
-        Modes::Count(_) => format!("modal: the {count} modes stated"),
+        Modes::Count(_) => format!("modal: the {modes} stated"),
         Modes::Auto if chosen => "modal: the striker does not approach".to_owned(),
         Modes::Auto if impact.remainder_modes > 0 => {
-            format!("modal: all {count} modes listed, and {} for the others", impact.remainder_modes)
+            format!("modal: the {modes} listed, and {} for the others", impact.remainder_modes)
         }
-        Modes::Auto => format!("modal: all {count} modes listed"),
+        Modes::Auto => format!("modal: the {modes} listed"),
     };
     let tolerance = impact.settings.tolerance;
     let solver = solution.restitution_uncertainty;

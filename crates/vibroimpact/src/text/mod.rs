@@ -141,20 +141,29 @@ pub fn result(summary: &Summary) -> String {
     }
     let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", residual(unaccounted_j));
 
+    // late short contacts have times of many digits
+    let listed = summary.sub_impacts.iter().take(LISTED);
+    let times: Vec<[String; 2]> = listed
+        .clone()
+        .map(|contact| {
+            let duration_s = contact.end_s - contact.start_s;
+            [contact.start_s, contact.end_s].map(|time_s| quantity_apart(time_s, "s", duration_s))
+        })
+        .collect();
+    let longest = times.iter().flatten().map(|time| time.chars().count()).max().unwrap_or(0);
+    let wide = 14.max(longest + 2);
     if summary.sub_impact_count > 0 {
         let _ = writeln!(
             text,
-            "\n  {:>3}{:>14}{:>14}{:>16}{:>14}{:>14}",
+            "\n  {:>3}{:>wide$}{:>wide$}{:>16}{:>14}{:>14}",
             "#", "from", "to", "impulse", "peak force", "compression"
         );
     }
-    for (i, contact) in summary.sub_impacts.iter().take(LISTED).enumerate() {
+    for (i, (contact, [from, to])) in listed.zip(&times).enumerate() {
         let _ = writeln!(
             text,
-            "  {:>3}{:>14}{:>14}{:>16}{:>14}{:>14}",
+            "  {:>3}{from:>wide$}{to:>wide$}{:>16}{:>14}{:>14}",
             i + 1,
-            quantity_apart(contact.start_s, "s", contact.end_s - contact.start_s),
-            quantity_apart(contact.end_s, "s", contact.end_s - contact.start_s),
             quantity(contact.impulse_n_s, "N s"),
             quantity(contact.peak_force_n, "N"),
             quantity(contact.peak_compression_m, "m")
