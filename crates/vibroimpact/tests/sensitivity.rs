@@ -70,26 +70,31 @@ fn difference(tree: &Value, pointer: &str, step: f64) -> f64 {
 }
 
 /// A contact that yields far below its load recovers little of its compression: the unloading line depends on the small difference of
-/// two numbers of its branch.
+/// two numbers of its branch. The less it recovers, the more of the derivative is lost to the rounding of these numbers.
 #[test]
 fn derivatives_of_a_contact_that_hardly_recovers_agree_with_differences() {
-    let tree = json!({
-        "structure": {
-            "kind": "modal", "omega_rad_s": [900.0, 1800.0], "shape_at_location": [2.0, 1.5], "damping_ratios": [0.02, 0.01]
-        },
-        "striker": { "mass_kg": 0.1, "speed_m_s": 0.5, "radius_m": 0.05 },
-        "contact": { "law": "elastoplastic", "youngs_modulus_pa": 2e8, "poissons_ratio": 0.3, "yield_pressure_pa": 2e2 }
-    });
     let fields = ["striker.speed_m_s", "contact.yield_pressure_pa", "contact.youngs_modulus_pa"].map(str::to_owned);
-    let found = Scene::from_value(&tree).unwrap().sensitivity(&fields).unwrap();
-    for field in &fields {
-        let pointer = format!("/{}", field.replace('.', "/"));
-        let value = found.scene.pointer(&pointer).unwrap().as_f64().unwrap();
-        let derivative = found.of("restitution", field).unwrap();
-        let reference = difference(&found.scene, &pointer, 1e-3 * value);
-        let error = (derivative.value - reference).abs();
-        let known = derivative.uncertainty.unwrap();
-        assert!(error < known && known < 0.3 * reference.abs(), "{field}: {derivative:?} {reference}");
+    for (yield_pressure_pa, most) in [(2e3, 1e-4), (2e2, 3e-3), (2e1, 1e-2)] {
+        let tree = json!({
+            "structure": {
+                "kind": "modal", "omega_rad_s": [900.0, 1800.0], "shape_at_location": [2.0, 1.5], "damping_ratios": [0.02, 0.01]
+            },
+            "striker": { "mass_kg": 0.1, "speed_m_s": 0.5, "radius_m": 0.05 },
+            "contact": {
+                "law": "elastoplastic", "youngs_modulus_pa": 2e8, "poissons_ratio": 0.3, "yield_pressure_pa": yield_pressure_pa
+            },
+            "tolerance": 1e-10
+        });
+        let found = Scene::from_value(&tree).unwrap().sensitivity(&fields).unwrap();
+        for field in &fields {
+            let pointer = format!("/{}", field.replace('.', "/"));
+            let value = found.scene.pointer(&pointer).unwrap().as_f64().unwrap();
+            let derivative = found.of("restitution", field).unwrap();
+            let reference = difference(&found.scene, &pointer, 3e-3 * value);
+            let error = (derivative.value - reference).abs();
+            let known = derivative.uncertainty.unwrap();
+            assert!(error < known && known < most * reference.abs(), "{field}: {derivative:?} {reference}");
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use super::solve::{Keep, Solver, follow};
 use super::stencil::Stencil;
 use super::system::System;
 use super::tables::Tables;
-use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
+use super::tangent::{Expansions, IntervalChange, ROUNDED, Tangent, tangents};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
@@ -39,8 +39,8 @@ pub struct Parameter<'a, L> {
 pub struct Derivative {
     /// The derivative.
     pub value: f64,
-    /// Its uncertainty, from the derivative along a coarser solution. `None` if that solution has another sequence of contacts (for an
-    /// interval of contact: no such interval), so that no digit of the derivative is certain.
+    /// Its uncertainty, from the derivative along a coarser solution with rounding errors of the laws added. `None` if that solution
+    /// has another sequence of contacts (for an interval of contact: no such interval), so that no digit of the derivative is certain.
     pub uncertainty: Option<f64>,
 }
 
@@ -228,7 +228,7 @@ impl Solver<'_> {
             })
             .collect();
         let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
-        let fine = self.along(&self.tables, settings, (&around, &changes, &asked));
+        let fine = self.along(&self.tables, settings, (&around, &changes, &asked), 0.0);
         let Differences { run, intervals, changes: fine, nearest_graze, nearest_miss } = fine;
         // the coarser run ends at the same time as this one, which is fixed unless it is the requested end
         let (end_s, ends) = match run.outcome {
@@ -239,7 +239,7 @@ impl Solver<'_> {
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
         let coarse = match fine.iter().any(Result::is_ok) {
-            true => self.along(self.beside(), &coarser, (&around, &changes, &ends)).changes,
+            true => self.along(self.beside(), &coarser, (&around, &changes, &ends), ROUNDED).changes,
             false => Vec::new(),
         };
         let derivatives = fine.into_iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
@@ -268,8 +268,14 @@ impl Solver<'_> {
         let changes: Vec<Change> =
             of(false).chain(of(true)).map(|(place, of_rate)| Change::of_start(system, place, of_rate)).collect();
         let fixed = vec![0.0; changes.len()];
-        let found =
-            tangents(posed, system, &record.stretches, (&changes, Some(&fixed)), &mut Expansions::new(tables.steps));
+        let found = tangents(
+            posed,
+            system,
+            &record.stretches,
+            (&changes, Some(&fixed)),
+            &mut Expansions::new(tables.steps),
+            0.0,
+        );
         let column = |tangent: Result<Tangent, NoDerivative>| {
             let tangent = tangent?;
             let of = |values: &[f64]| places().map(|place| values[place]).collect::<Vec<f64>>();
@@ -319,12 +325,14 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run in the steps of these tables, with its derivatives; `end_s` has those of the requested time.
+    /// One run in the steps of these tables, with its derivatives; `end_s` has those of the requested time, and `rounded` is an error
+    /// of the laws' numbers (see [`tangents`]).
     fn along(
         &self,
         tables: &Tables,
         settings: &Settings,
         (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
+        rounded: f64,
     ) -> Differences {
         let Solver { posed, system, .. } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
@@ -341,7 +349,7 @@ impl Solver<'_> {
             true => Err(NoDerivative::Outcome),
             false => {
                 let expansions = &mut Expansions::new(tables.steps);
-                tangents(posed, system, &record.stretches, (changes, fixed), expansions)
+                tangents(posed, system, &record.stretches, (changes, fixed), expansions, rounded)
             }
         };
         let (intervals, nearest_miss) = (watch.0, record.nearest_miss);

@@ -50,6 +50,12 @@ impl<const N: usize> Stencil<N> {
 
 impl Stencil<4> {
     pub(crate) fn central(step: f64) -> Stencil<4> {
-        Stencil::new([-2.0 * step, -step, step, 2.0 * step])
+        Stencil::around(0.0, step)
+    }
+
+    /// Neighbours of a value, at the distances that they have after rounding: those asked for may be few of its last digits.
+    pub(crate) fn around(value: f64, step: f64) -> Stencil<4> {
+        let step = step.max(8.0 * f64::EPSILON * value.abs());
+        Stencil::new([-2.0, -1.0, 1.0, 2.0].map(|place| (value + place * step) - value))
     }
 }

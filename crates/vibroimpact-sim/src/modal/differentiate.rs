@@ -8,7 +8,7 @@ use crate::assembly::change::Change;
 use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
 use crate::assembly::solve::Keep;
-use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
+use crate::assembly::tangent::{Expansions, IntervalChange, ROUNDED, Tangent, tangents};
 use crate::concurrent::both;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
@@ -234,7 +234,8 @@ impl Solver {
         let posed = assembly.with_laws(vec![impact.law]);
         let stretches = &run.record.stretches;
         let expansions = &mut Expansions::new(SOLUTIONS[which].0);
-        let found = tangents(&posed, system, stretches, (&around.changes, None), expansions)?;
+        let rounded = if which == ANSWER { 0.0 } else { ROUNDED };
+        let found = tangents(&posed, system, stretches, (&around.changes, None), expansions, rounded)?;
         let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
         let pick = |values: &[f64]| {
             let mut all = vec![0.0; self.modes().len()];

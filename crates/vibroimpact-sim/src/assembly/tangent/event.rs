@@ -151,7 +151,8 @@ impl Walk<'_> {
             changes += self.changes[d].stencil.slope(all(laws[c].map(|law| margin(law, &branch)))?);
         }
         for (which, by) in carried.branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let stencil = Stencil::central(LAW_STEP * size_of(&branch, which, &self.contacts[c]));
+            let value = numbers(branch.anchor_m, branch.internal)[which];
+            let stencil = Stencil::around(value, LAW_STEP * size_of(&branch, which, &self.contacts[c]));
             let margins = stencil.offsets.map(|offset| margin(law, &shifted(&branch, which, offset)));
             changes += by * stencil.slope(all(margins)?);
         }
@@ -167,7 +168,7 @@ impl Walk<'_> {
         [overlap, rate]: [f64; 2],
         (apart, speed): (&[f64], [f64; 2]),
     ) {
-        let law = self.posed.laws[c];
+        let (law, rounded) = (self.posed.laws[c], self.rounded);
         let followed = self.contacts[c];
         // the law computes its new numbers from its own numbers and two of the motion
         const GIVEN: usize = NUMBERS + 2;
@@ -214,12 +215,19 @@ impl Walk<'_> {
             if found.iter().any(|found| kind(found) != kind(&after)) {
                 return Err(NoDerivative::Fork { contact: c, time_s: at_s });
             }
-            let found = found.each_ref().map(numbers_of);
-            Ok(array::from_fn(|which| stencil.slope(found.map(|numbers| numbers[which]))))
+            let (found, made) = (found.each_ref().map(numbers_of), numbers_of(&after));
+            let slope = |which: usize| {
+                let slope = stencil.slope(found.map(|numbers| numbers[which]));
+                // numbers that are only handed on are not rounded
+                let is_exact = slope == 0.0 || given.contains(&made[which]);
+                let error = if is_exact { 0.0 } else { rounded * made[which].abs() * stencil.magnification() };
+                slope + error
+            };
+            Ok(array::from_fn(slope))
         };
         // derivatives of these numbers with respect to a given number
         let by_given = |i: usize| {
-            let stencil = Stencil::central(LAW_STEP * sizes[i]);
+            let stencil = Stencil::around(given[i], LAW_STEP * sizes[i]);
             let found = stencil.offsets.map(|offset| {
                 let mut shifted = given;
                 shifted[i] += offset;

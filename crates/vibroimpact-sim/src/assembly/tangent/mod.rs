@@ -100,16 +100,22 @@ struct Arrival<'a> {
     next: &'a Stretch,
 }
 
+/// Relative error of the numbers that a law computes at an event, with which the derivatives beside the answer are computed: that of a
+/// few roundings, divided by the factor from a difference to an uncertainty.
+pub(crate) const ROUNDED: f64 = 0.25 * f64::EPSILON;
+
 /// The tangents of a recorded motion. A record that ends at a fixed time ends with a stretch of zero length, and `end_s` has the
-/// derivatives of that time with respect to each parameter.
+/// derivatives of that time with respect to each parameter. `rounded` is an error of the numbers that the laws compute at events,
+/// relative to them: zero, or [`ROUNDED`] to see what it amounts to.
 pub(crate) fn tangents(
     posed: &Posed,
     system: &System,
     stretches: &[Stretch],
     (changes, end_s): (&[Change], Option<&[f64]>),
     expansions: &mut Expansions,
+    rounded: f64,
 ) -> Result<Tangents, NoDerivative> {
-    let mut walk = Walk::new(posed, system, changes, expansions);
+    let mut walk = Walk::new(posed, system, changes, expansions, rounded);
     for (i, stretch) in stretches.iter().enumerate() {
         // events at the start of the record are treated on a panel of zero length
         if i == 0 && !stretch.events.is_empty() {

@@ -13,9 +13,11 @@ use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
 
-/// Step of a branch's anchor relative to the compression beyond it, and the smallest step relative to its size.
-const ANCHOR_STEP: f64 = 0.01;
-const LEAST_LAW_STEP: f64 = 1e-9;
+/// Wide and near steps of a number of a branch relative to its distance from the anchor, and the smallest steps relative to its size.
+const ANCHOR_STEPS: [f64; 2] = [0.01, 5e-4];
+const LEAST_LAW_STEPS: [f64; 2] = [1e-9, 1e-12];
+/// Rounding of a force relative to itself, at most.
+const LAW_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The closed contacts of a panel, as the record has them.
 pub(super) struct Solved {
@@ -342,19 +344,28 @@ impl Walk<'_> {
         let law = self.posed.laws[c];
         for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
             let size = size_of(&own.branch, which, &self.contacts[c]);
+            let value = numbers(own.branch.anchor_m, own.branch.internal)[which];
             for i in 0..Q {
                 // a law may have a kink at its anchor, which the neighbouring values must not cross, and depend on how far another
                 // number is from the anchor
-                let other = if which == 0 {
-                    own.compression[i]
-                } else {
-                    numbers(own.branch.anchor_m, own.branch.internal)[which]
-                };
+                let other = if which == 0 { own.compression[i] } else { value };
                 let apart = (other - own.branch.anchor_m).abs();
-                let step = (ANCHOR_STEP * apart).clamp(LEAST_LAW_STEP * size, LAW_STEP * size);
-                let stencil = Stencil::central(step);
-                let forces = stencil.offsets.map(|offset| at(law, &shifted(&own.branch, which, offset), i));
-                found[i] += by * stencil.slope(forces);
+                let slope = |step: f64| {
+                    let stencil = Stencil::around(value, step);
+                    let forces = stencil.offsets.map(|offset| at(law, &shifted(&own.branch, which, offset), i));
+                    let largest = forces.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+                    (stencil.slope(forces), LAW_ROUNDING * largest * stencil.magnification())
+                };
+                let [wide, near] =
+                    array::from_fn(|k| (ANCHOR_STEPS[k] * apart).clamp(LEAST_LAW_STEPS[k] * size, LAW_STEP * size));
+                let by_number = if near == wide {
+                    slope(wide).0
+                } else {
+                    // rounding disturbs the wider step less, where the law is smooth over it
+                    let ((wide, _), (near, rounding)) = (slope(wide), slope(near));
+                    if (near - wide).abs() <= rounding { wide } else { near }
+                };
+                found[i] += by * by_number;
             }
         }
         found

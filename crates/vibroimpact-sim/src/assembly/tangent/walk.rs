@@ -105,6 +105,8 @@ pub(super) struct Walk<'a> {
     pub loads: Loads,
     pub load_changes: Vec<Option<LoadChange>>,
     pub expansions: &'a mut Expansions,
+    /// Relative error of the numbers that the laws compute at events, which the derivatives of a branch contain.
+    pub rounded: f64,
     pub blocks: Blocks,
     pub contacts: Vec<Followed>,
     pub tangents: Vec<Tangent>,
@@ -125,6 +127,7 @@ impl<'a> Walk<'a> {
         system: &'a System,
         changes: &'a [Change<'a>],
         expansions: &'a mut Expansions,
+        rounded: f64,
     ) -> Walk<'a> {
         let unit = |span: &Span| Span { modes: span.modes.clone(), psi: vec![-1.0; span.psi.len()] };
         let followed = |gap: &f64| Followed {
@@ -157,6 +160,7 @@ impl<'a> Walk<'a> {
             loads,
             load_changes: changes.iter().map(|change| change.loads.clone()).collect(),
             expansions,
+            rounded,
             blocks: Blocks::default(),
             contacts: posed.gaps_m.iter().map(followed).collect(),
             tangents,
