@@ -53,7 +53,8 @@ impl Stencil<4> {
         Stencil::around(0.0, step)
     }
 
-    /// Neighbours of a value, at the distances that they have after rounding: those asked for may be few of its last digits.
+    /// Neighbours of a value at about one and two steps on either side. The offsets are those of the neighbours after rounding, since a
+    /// step may be only a few units in the last place of the value.
     pub(crate) fn around(value: f64, step: f64) -> Stencil<4> {
         let step = step.max(8.0 * f64::EPSILON * value.abs());
         Stencil::new([-2.0, -1.0, 1.0, 2.0].map(|place| (value + place * step) - value))

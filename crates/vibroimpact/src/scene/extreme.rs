@@ -39,8 +39,8 @@ const RAYLEIGH: [(&str, f64); 2] = [("rayleigh_mass_per_s", 10.0), ("rayleigh_st
 /// A longer number is shown with a power of ten (characters).
 const LONGEST_PLAIN: usize = 8;
 
-/// A field with its value, and this relative to the usual one.
-type Sized<F> = ((F, f64), f64);
+/// A field with its value, and this value relative to its usual one.
+type Relative<F> = ((F, f64), f64);
 
 /// Checks that a quantity which follows from several fields is finite and greater than zero.
 pub(super) fn require_product(quantity: &str, found: f64, fields: &[(&str, f64)]) -> Result<(), InvalidInput> {
@@ -52,11 +52,10 @@ pub(super) fn require_product(quantity: &str, found: f64, fields: &[(&str, f64)]
 
 /// The error of a quantity that follows from several fields and is not as it is allowed to be, as that of the most extreme of them.
 pub(super) fn of_product(quantity: &str, found: f64, fields: &[(&str, f64)], allowed: &str) -> InvalidInput {
-    let sized = |&(field, value): &(&str, f64)| -> Sized<String> {
-        let usual = USUAL.iter().find(|(name, _)| *name == field).map_or(1.0, |(_, usual)| *usual);
-        ((field.to_owned(), value), value / usual)
+    let relative = |&(field, value): &(&str, f64)| -> Relative<String> {
+        ((field.to_owned(), value), value / usual_size(&USUAL, Some(field)).unwrap_or(1.0))
     };
-    let (field, value) = most_extreme(fields.iter().map(sized)).unwrap_or_default().0;
+    let (field, value) = most_extreme(fields.iter().map(relative)).unwrap_or_default().0;
     let all = fields.iter().map(|(field, _)| *field).collect::<Vec<_>>().join(", ");
     let allowed = such_that(&format!("the {quantity}"), &InvalidInput::new("", found, allowed));
     InvalidInput::new(field, number(value), format!("{allowed}; it follows from {all}"))
@@ -82,8 +81,8 @@ fn first_digits(value: f64) -> String {
 
 /// The most extreme of the numbers in a scene, or in a part of it, whose paths count.
 pub(crate) fn most_extreme_in(tree: &Tree, counts: impl Fn(&Path) -> bool) -> Option<(Path, f64)> {
-    let sized = sized(tree, &USUAL).filter(|((path, _), _)| counts(path));
-    Some(most_extreme(sized)?.0)
+    let counted = relative_numbers(tree, &USUAL).filter(|((path, _), _)| counts(path));
+    Some(most_extreme(counted)?.0)
 }
 
 /// The error of a number of a mode that was computed, as that of a field of the scene from which it follows.
@@ -96,7 +95,7 @@ pub(crate) fn of_computed_mode(fault: InvalidInput, scene: &impl Serialize) -> I
     let found = match quantity.as_str() {
         // it may only be too large
         "damping_ratio" => {
-            sized(structure, &RAYLEIGH).max_by(|one, other| one.1.total_cmp(&other.1)).map(|most| most.0)
+            relative_numbers(structure, &RAYLEIGH).max_by(|one, other| one.1.total_cmp(&other.1)).map(|most| most.0)
         }
         _ => most_extreme_in(structure, |_| true),
     };
@@ -106,11 +105,16 @@ pub(crate) fn of_computed_mode(fault: InvalidInput, scene: &impl Serialize) -> I
 }
 
 /// The numbers of a tree that have a usual size and are not zero.
-fn sized(tree: &Tree, usual: &'static [(&str, f64)]) -> impl Iterator<Item = Sized<Path>> {
+fn relative_numbers(tree: &Tree, usual: &'static [(&str, f64)]) -> impl Iterator<Item = Relative<Path>> {
     numbers(tree).into_iter().filter(|(_, value)| *value != 0.0).filter_map(|(path, value)| {
-        let (_, usual) = usual.iter().find(|(name, _)| path.last() == Some(*name))?;
-        Some(((path, value), value / usual))
+        let size = usual_size(usual, path.last())?;
+        Some(((path, value), value / size))
     })
+}
+
+/// The usual size of a field in a list.
+fn usual_size(usual: &[(&str, f64)], field: Option<&str>) -> Option<f64> {
+    usual.iter().find(|(name, _)| field == Some(*name)).map(|(_, size)| *size)
 }
 
 /// All numbers of a tree with their paths.

@@ -216,14 +216,14 @@ impl Walk<'_> {
                 return Err(NoDerivative::Fork { contact: c, time_s: at_s });
             }
             let (found, made) = (found.each_ref().map(numbers_of), numbers_of(&after));
-            let slope = |which: usize| {
+            let derivative = |which: usize| {
                 let slope = stencil.slope(found.map(|numbers| numbers[which]));
                 // numbers that are only handed on are not rounded
                 let is_exact = slope == 0.0 || given.contains(&made[which]);
                 let error = if is_exact { 0.0 } else { rounded * made[which].abs() * stencil.magnification() };
                 slope + error
             };
-            Ok(array::from_fn(slope))
+            Ok(array::from_fn(derivative))
         };
         // derivatives of these numbers with respect to a given number
         let by_given = |i: usize| {

@@ -346,8 +346,8 @@ impl Walk<'_> {
             let size = size_of(&own.branch, which, &self.contacts[c]);
             let value = numbers(own.branch.anchor_m, own.branch.internal)[which];
             for i in 0..Q {
-                // a law may have a kink at its anchor, which the neighbouring values must not cross, and depend on how far another
-                // number is from the anchor
+                // a law may have a kink at its anchor, which the neighbouring values must not cross; and its force may depend on the
+                // distance of another number from the anchor
                 let other = if which == 0 { own.compression[i] } else { value };
                 let apart = (other - own.branch.anchor_m).abs();
                 let slope = |step: f64| {
