@@ -1,6 +1,6 @@
 //! Products of power series by the fast Fourier transform.
 
-// A planner of any length and vector unit would be most of the code of this crate.
+// A planner for any length and vector unit would be most of the compiled code of this crate.
 use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftDirection, Length};
