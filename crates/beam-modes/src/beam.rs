@@ -2,16 +2,14 @@
 
 use crate::compliance::green;
 use crate::definition::{Beam, End, is_held};
+use crate::elastic::Elastic;
 use crate::flexure::Flexure;
 use crate::location::require_on;
 use crate::modes::{Modes, held_ends, require_count};
 use crate::node::Node;
 use crate::piece::Piece;
 use crate::rigid::{rigid_motions, rigid_shape};
-use crate::roots::elastic_roots;
-use crate::shapes::shapes;
 use crate::span::{Span, Units, nondimensional_beam};
-use crate::uniform;
 use invalid_input::InvalidInput;
 
 impl Beam {
@@ -39,17 +37,11 @@ impl Beam {
         let elastic = count.saturating_sub(motions.len());
 
         let chain = Flexure::new(spans.clone(), self.ends, nodes);
-        let roots = if spans.len() == 1 {
-            (1..=elastic).map(|n| uniform::root(self.ends, n)).collect()
-        } else {
-            elastic_roots(&chain, motions.len(), elastic)?
-        };
-
+        let Elastic { omega, shapes } = Elastic::of(&chain, motions.len(), elastic)?;
         let unit = units.bending_frequency();
-        let omega = roots.iter().map(|q| q * q * unit);
+        let omega = omega.iter().map(|omega| omega * unit);
         let rigid: Vec<Vec<Piece>> = motions.iter().take(count).map(|motion| rigid_shape(&spans, motion)).collect();
-        let elastic = shapes(&chain, &roots);
-        Modes::assemble(spans, units, rigid, omega, elastic, held_ends(self.ends.map(is_held)))
+        Modes::assemble(spans, units, rigid, omega, shapes, held_ends(self.ends.map(is_held)))
     }
 
     /// Static compliance `G(x, x)`: displacement at `x_m` under a steady unit force there, m/N.

@@ -102,6 +102,12 @@ impl Flexure {
         Self { spans, ends, nodes, wave_numbers, phase, steps, founded, plain }
     }
 
+    /// The span and the ends of a uniform beam to which nothing is attached.
+    pub fn uniform(&self) -> Option<(&Span, [End; 2])> {
+        let bare = self.nodes.iter().all(|node| *node == Node::default());
+        self.spans.first().filter(|_| bare && self.spans.len() == 1).map(|span| (span, self.ends))
+    }
+
     /// The scaling wave number, from the mass or, if it is stiffer, from the foundation.
     fn wave_number(&self, i: usize, q: f64) -> f64 {
         let Span { mass, foundation, rigidity, .. } = self.spans[i];

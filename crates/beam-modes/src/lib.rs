@@ -42,7 +42,8 @@
 //! 3. The planes from the left and from the right are compared at every span. The mode is started where they agree best, that
 //!    is, where the mode is large, and computed from there to both sides. Shapes of nearly equal frequencies are orthogonalised
 //!    with closed-form integrals, which also give the norm.
-//! 4. A uniform Euler-Bernoulli beam needs no search: one formula covers the ten pairs of ends.
+//! 4. A uniform beam with pinned or guided ends needs no search by either theory, since its modes are sines and cosines
+//!    (`standing.rs`), nor does one by Euler-Bernoulli's with any ends: one formula covers the other seven pairs (`uniform.rs`).
 //! 5. All this applies to every span whose four first-order equations have constant coefficients. Shear, rotary inertia, axial
 //!    force and foundation change only the two exponents of a span and the ratios of moment to displacement of its waves
 //!    (`waves.rs`); masses and springs shear the plane at their location, and a support replaces one of its columns (`node.rs`,
@@ -88,6 +89,7 @@ mod chain;
 mod compliance;
 mod definition;
 mod dense;
+mod elastic;
 pub mod fem;
 mod flexure;
 mod krylov;
@@ -105,6 +107,7 @@ mod rod;
 mod roots;
 mod shapes;
 mod span;
+mod standing;
 mod statics;
 mod string;
 mod superposition;

@@ -6,41 +6,24 @@ use crate::chain::Chain;
 #[cfg(doc)]
 use crate::definition::Beam;
 use crate::definition::{BeamSystem, is_held};
+use crate::elastic::Elastic;
 use crate::flexure::Flexure;
 use crate::location::require_on;
 use crate::modes::{Modes, held_ends, require_count};
 use crate::node::Node;
 use crate::piece::Piece;
 use crate::rigid::{rigid_motions, rigid_shape};
-use crate::roots::{count_below_search, elastic_roots};
-use crate::shapes::shapes;
+use crate::roots::count_below_search;
 use crate::span::{RESOLVABLE, Units};
 use crate::statics;
 use invalid_input::InvalidInput;
-
-/// Elastic modes in ascending order, dimensionless.
-#[derive(Default)]
-struct Found {
-    omega: Vec<f64>,
-    shapes: Vec<Vec<Piece>>,
-}
-
-impl Found {
-    /// Adds `wanted` modes above the first `below` ones of a chain whose foundation was reduced by `raised`.
-    fn add(&mut self, guide: &Flexure, below: usize, wanted: usize, raised: f64) -> Result<(), InvalidInput> {
-        let roots = elastic_roots(guide, below, wanted)?;
-        self.omega.extend(roots.iter().map(|q| (q * q).hypot(raised.sqrt())));
-        self.shapes.extend(shapes(guide, &roots));
-        Ok(())
-    }
-}
 
 impl Chain {
     fn waveguide(&self) -> Flexure {
         Flexure::new(self.spans.clone(), self.ends, self.nodes.clone())
     }
 
-    fn assemble(self, rigid: Vec<Vec<Piece>>, elastic: Found) -> Result<Modes, InvalidInput> {
+    fn assemble(self, rigid: Vec<Vec<Piece>>, elastic: Elastic) -> Result<Modes, InvalidInput> {
         let Self { spans, nodes, ends, units } = self;
         let last = spans.len() - 1;
         let place = |i: usize| if i > last { (last, spans[last].length) } else { (i, 0.0) };
@@ -107,7 +90,7 @@ impl BeamSystem {
             require_count(count, chain.spans.len())?;
             let guide = chain.waveguide();
             let below = count_below_search(&guide);
-            let mut found = Found::default();
+            let mut found = Elastic::default();
             found.add(&whole.waveguide(), 0, below.min(count), 0.0)?;
             found.add(&guide, below, count - found.shapes.len(), raised)?;
             return chain.assemble(Vec::new(), found);
@@ -116,10 +99,10 @@ impl BeamSystem {
         let mut rigid: Vec<Vec<Piece>> =
             motions.iter().take(count).map(|motion| rigid_shape(&chain.spans, motion)).collect();
         let elastic = count - rigid.len();
-        let mut found = Found::default();
+        let mut found = Elastic::default();
         if raised > 0.0 {
             // A foundation in proportion to the mass turns rigid motions into vibrations.
-            found = Found { omega: vec![raised.sqrt(); rigid.len()], shapes: std::mem::take(&mut rigid) };
+            found = Elastic { omega: vec![raised.sqrt(); rigid.len()], shapes: std::mem::take(&mut rigid) };
         }
         found.add(&chain.waveguide(), motions.len(), elastic, raised)?;
         chain.assemble(rigid, found)

@@ -1,22 +1,28 @@
-//! The characteristic equations of a uniform beam, in a form that never overflows.
+//! The characteristic equations of a uniform Euler-Bernoulli beam with a clamped or free end, in a form that never overflows.
 //!
-//! For every pair of ends the textbook equation (`cos x cosh x = 1`, `tan x = tanh x`, ...) with `x = k L` is equivalent to
+//! For every such pair of ends the textbook equation (`cos x cosh x = 1`, `tan x = tanh x`, ...) with `x = k L` is equivalent to
 //!
-//! `x = (n + shift) pi + s m atan(exp(-2 x / m))`,  `s = -1, 0, +1`,  `m = 1, 2`,
+//! `x = (n + shift) pi + s m atan(exp(-2 x / m))`,  `s = -1, +1`,  `m = 1, 2`,
 //!
 //! whose last term is at most a fraction of the distance between roots: there is exactly one root for each `n`, and Newton's
 //! method finds it in a few steps.
 
 use crate::definition::End;
+use crate::span::Span;
 use std::f64::consts::PI;
 
+/// The square roots of the first `wanted` frequencies; `None` if neither end is clamped or free (`standing.rs`).
+pub(crate) fn roots(span: &Span, ends: [End; 2], wanted: usize) -> Option<Vec<f64>> {
+    let unit = (span.rigidity / span.mass).sqrt().sqrt() / span.length;
+    (1..=wanted).map(|n| Some(root(ends, n)? * unit)).collect()
+}
+
 /// `k L` of the `n`-th elastic mode, `n = 1, 2, ...`
-pub(crate) fn root(ends: [End; 2], n: usize) -> f64 {
+fn root(ends: [End; 2], n: usize) -> Option<f64> {
     use End::{Clamped, Free, Guided, Pinned};
     let alternate = if n % 2 == 1 { 1.0 } else { -1.0 };
     let (shift, sign, m) = match ends {
-        [Pinned, Pinned] | [Guided, Guided] => (0.0, 0.0, 1.0),
-        [Pinned, Guided] | [Guided, Pinned] => (-0.5, 0.0, 1.0),
+        [Pinned | Guided, Pinned | Guided] => return None,
         // cos x cosh x = 1
         [Clamped, Clamped] | [Free, Free] => (0.5, alternate, 2.0),
         // cos x cosh x = -1
@@ -38,5 +44,5 @@ pub(crate) fn root(ends: [End; 2], n: usize) -> f64 {
             break;
         }
     }
-    x
+    Some(x)
 }

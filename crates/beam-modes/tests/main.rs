@@ -12,6 +12,7 @@ mod participation;
 mod plates;
 mod remainder;
 mod rods;
+mod standing;
 mod stepped;
 mod strings;
 mod timoshenko;
