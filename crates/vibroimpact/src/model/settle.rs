@@ -23,8 +23,8 @@
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
-use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
+use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
@@ -102,16 +102,55 @@ struct Unseen {
     compliance: f64,
 }
 
-impl Rung {
-    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
+/// An impact with a number of modes, to be solved.
+struct Posed {
+    count: usize,
+    impact: Impact,
+    resolution: f64,
+}
+
+impl Posed {
+    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Posed, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
         let (striker, law) = (pose.striker, pose.law);
+        let remainder = &structure.modes[structure.modes.len() - remainder_modes..];
+        let resolution = resolution_of(pose, count, remainder, cost)?;
         let impact = Impact { structure, remainder_modes, striker, law, start: None, settings };
-        let (solution, recording) = solve(&impact, pose.kept, cost)?;
-        let Impact { structure, .. } = &impact;
-        let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
+        Ok(Posed { count, impact, resolution })
+    }
+
+    fn solved(self, solution: Solution, recording: Option<Recording>) -> Rung {
+        let Posed { count, impact, resolution } = self;
         let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
-        Ok(Rung { count, impact, solution, recording, resolution, energy, unseen: None })
+        Rung { count, impact, solution, recording, resolution, energy, unseen: None }
+    }
+}
+
+impl Rung {
+    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
+        let posed = Posed::new(pose, count, settings, cost)?;
+        let (solution, recording) = solve(&posed.impact, pose.kept, cost)?;
+        Ok(posed.solved(solution, recording))
+    }
+
+    /// One with this number of modes and, if impacts are solved at the same time, the one with fewer modes that it will most likely
+    /// be compared with. Where that one fails, it has not been solved.
+    fn with_the_one_before(
+        pose: &mut Pose,
+        count: usize,
+        settings: Settings,
+        cost: &mut Cost,
+    ) -> Result<(Rung, Option<Rung>), InvalidInput> {
+        if !pose.kept.is_alone() || pose.is_complete() {
+            return Ok((Rung::new(pose, count, settings, cost)?, None));
+        }
+        let posed = Posed::new(pose, count, settings, cost)?;
+        let before = Posed::new(pose, fewer(count), settings, cost).ok();
+        let solve_before = || before.as_ref()?.impact.solve().ok();
+        let (of_before, solved) = both(before.is_some(), solve_before, || solve(&posed.impact, pose.kept, cost));
+        let (solution, recording) = solved?;
+        let before = before.zip(of_before).map(|(before, solution)| before.solved(solution, None));
+        Ok((posed.solved(solution, recording), before))
     }
 
     /// Change with other remainder modes and, if it is wanted, with a looser tolerance.
@@ -274,7 +313,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let is_plate = matches!(pose.scene.structure, scene::Structure::Plate(_));
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
-    let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
+    let (first, mut before) = Rung::with_the_one_before(pose, expected, settings(tolerance, tightened), cost)?;
     let per_impulse = restitution_per_impulse(&first.impact);
     let jumps = jumps(&pose.law);
     let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, jumps, complete, too_many: None };
@@ -293,7 +332,14 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         // the energy of one impact shows that its modes are too few; otherwise a change has to
         let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
-            rungs.add_earlier(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
+            let before = match before.take().filter(|before| before.count == fewer(count)) {
+                Some(solved) => {
+                    cost.add(&solved.solution.counts, solved.impact.structure.modes.len());
+                    solved
+                }
+                None => Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?,
+            };
+            rungs.add_earlier(before);
         }
         if (is_plate || jumps)
             && rungs.near().count() == 2
