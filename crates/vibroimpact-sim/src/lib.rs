@@ -24,6 +24,7 @@ mod concurrent;
 pub mod dropped_rod;
 pub mod infinite;
 pub mod modal;
+mod outcome;
 mod panel;
 mod stop;
 

@@ -54,8 +54,16 @@
 //!
 //! *Flight*: closed form; the gap is convex, so there is at most one next contact, and Newton's method finds it (`flight.rs`).
 //!
-//! *End*: see [`Outcome::Sustained`]. Only for Hertz contact is it known whether a sustained contact ever ends (`sustained.rs`); with
-//! another law the run stops.
+//! *End*: a contact is sustained once relative oscillations of the force about that of an attached body ([`attached`]) have shrunk
+//! below one half over two natural periods, at a time from which the beam's damping outweighs everything that makes them grow,
+//!
+//! ```text
+//! d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8),
+//! ```
+//!
+//! at least four times over. Only for Hertz contact is it known whether a sustained contact ever ends (`sustained.rs`); with another
+//! law the run stops. Close to the critical `S` the end may depend on more digits than floating-point numbers have
+//! ([`StopReason::DigitsExhausted`](crate::StopReason::DigitsExhausted)): see [`Solution::certain_separations`].
 //!
 //! # Example
 //!

@@ -5,52 +5,8 @@ use super::panel::{Panel, Turn};
 use super::problem::{Settings, Structure};
 use super::rule::Tables;
 use crate::StopReason;
-use std::fmt;
 
-/// How an impact ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Outcome {
-    /// The body leaves for good: after the last separation it does not move towards the structure.
-    Rebound,
-    /// The contact does not end. Decided once relative oscillations of the force about that of an
-    /// attached body ([`attached`](super::attached)) have shrunk below one half over two natural
-    /// periods, at a time from which the beam's damping outweighs everything that makes them grow
-    /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
-    Sustained,
-    /// The computation stopped before the impact had ended; what was found up to
-    /// [`known_until`](Solution::known_until) is valid. On a beam close to the critical `S` the end may depend on more digits than
-    /// floating-point numbers have ([`StopReason::DigitsExhausted`]): see [`certain_separations`](Solution::certain_separations).
-    Stopped(StopReason),
-}
-
-impl Outcome {
-    /// The outcome as a word for tables and files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Outcome::Rebound => "rebound",
-            Outcome::Sustained => "sustained",
-            Outcome::Stopped(_) => "stopped",
-        }
-    }
-
-    /// The reason why the computation stopped before the end of the impact, if it did.
-    pub fn stopped_by(self) -> Option<StopReason> {
-        match self {
-            Outcome::Stopped(reason) => Some(reason),
-            _ => None,
-        }
-    }
-}
-
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Outcome::Stopped(reason) => write!(f, "stopped: {reason}"),
-            ended => f.pad(ended.as_str()),
-        }
-    }
-}
+pub use crate::outcome::Outcome;
 
 /// One interval of contact. Times in units of `T`, velocities in units of `v`, positive away from the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
