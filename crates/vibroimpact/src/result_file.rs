@@ -6,6 +6,7 @@ use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{Scale, Solution};
 
 use crate::export::{self, Failure};
+use crate::falling::Falling;
 use crate::infinite;
 use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
@@ -54,6 +55,8 @@ pub struct ResultFile {
     pub striker_velocity_m_s: Option<f64>,
     /// Motion of a dropped rod at the end; null for everything else.
     pub rod: Option<RodMotion>,
+    /// The rebound if the striker falls on the structure; null where gravity hardly changes it, and where it is not known.
+    pub falling: Option<Falling>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: Option<f64>,
     /// Number of modes retained.
@@ -126,6 +129,7 @@ impl ResultFile {
             sub_impacts,
             striker_velocity_m_s,
             rod,
+            falling,
             end_s,
             modes,
             remainder_modes,
@@ -153,6 +157,7 @@ impl ResultFile {
             sub_impacts: Some(sub_impacts.into_iter().map(contact).collect()),
             striker_velocity_m_s: Some(striker_velocity_m_s),
             rod,
+            falling,
             end_s: Some(end_s),
             modes,
             remainder_modes,
@@ -183,6 +188,7 @@ impl ResultFile {
                 _ => answer.restitution.map(|e| e * scene.striker.speed_m_s),
             },
             rod: None,
+            falling: None,
             end_s: None,
             modes: answer.modes,
             remainder_modes: answer.remainder_modes,

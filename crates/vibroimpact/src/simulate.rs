@@ -3,10 +3,12 @@
 use std::f64::consts::TAU;
 
 use contact_models::Law;
+use vibroimpact_sim::both;
 use vibroimpact_sim::infinite::{self, Scale};
 use vibroimpact_sim::modal::{History, Settings, Structure};
 
 use crate::export::{self, Table};
+use crate::falling;
 use crate::impact::Impact;
 use crate::infinite as infinite_structure;
 use crate::model::{Answer, Kept, Model};
@@ -70,16 +72,20 @@ impl Scene {
                 None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
                 None => return Ok(None),
             };
-            let recorded = impact.record_with(kept)?;
-            Ok(Some((impact, recorded)))
+            let solution = kept.solution_on(&impact.structure);
+            let falls = solution.filter(|solution| falling::matters(&impact, solution)).cloned();
+            let fall = || falling::falling(&impact, falls.as_ref()?);
+            let (falling, recorded) = both(falls.is_some(), fall, || impact.record_with(kept));
+            let recorded = recorded?;
+            Ok(Some((impact, recorded, falling)))
         })?;
-        let Some((impact, (solution, history))) = recorded else { return Ok(Simulation::Net(choice.answer)) };
+        let Some((impact, (solution, history), falling)) = recorded else { return Ok(Simulation::Net(choice.answer)) };
         let rod = match &self.structure {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,
         };
         let summary = Summary::new(&solution, history.energy_ledger(), &impact).chosen(choice.answer);
-        let summary = Summary { rod, ..summary };
+        let summary = Summary { rod, falling, ..summary };
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }
 

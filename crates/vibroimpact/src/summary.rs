@@ -1,5 +1,6 @@
 //! The result of a scene for files and text.
 
+pub use crate::falling::Falling;
 use crate::impact::Impact;
 use crate::model::{Answer, Uncertainty};
 use crate::stop_word::word;
@@ -29,6 +30,8 @@ pub struct Summary {
     pub striker_velocity_m_s: f64,
     /// Motion of a dropped rod at the end; null for other structures.
     pub rod: Option<RodMotion>,
+    /// The rebound if the striker falls on the structure; null where gravity hardly changes it, and where it is not known.
+    pub falling: Option<Falling>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,
     /// Number of modes retained.
@@ -155,6 +158,7 @@ impl Summary {
             sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
             rod: None,
+            falling: None,
             end_s: solution.end_s,
             modes: impact.kept_modes(),
             remainder_modes: impact.remainder_modes,

@@ -11,6 +11,7 @@ mod beams;
 mod choice_commands;
 mod command_line;
 mod documented_outputs;
+mod falling;
 mod first_steps;
 mod fuzz_corpus;
 mod gallery;

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use vibroimpact_sim::modal::{Recording, Solver, Structure};
+use vibroimpact_sim::modal::{Recording, Solution, Solver, Structure};
 
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, KnownModes};
@@ -78,6 +78,11 @@ impl Kept {
     /// The motion of the impact behind the last answer, if it was on this structure.
     pub(crate) fn motion_on(&mut self, structure: &Structure) -> Option<Recording> {
         self.motion.take().filter(|(kept, _)| kept == structure).map(|(_, recording)| recording)
+    }
+
+    /// The result of the impact behind the last answer, if it was on this structure and its motion was kept.
+    pub(crate) fn solution_on(&self, structure: &Structure) -> Option<&Solution> {
+        self.motion.as_ref().filter(|(kept, _)| kept == structure).map(|(_, recording)| recording.solution())
     }
 
     /// Empties the cache.

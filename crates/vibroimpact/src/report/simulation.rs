@@ -10,7 +10,7 @@ use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
-use crate::text::{leaves, quantity, restitution, significant, stopped};
+use crate::text::{self, leaves, quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
 /// Under the picture of an impact.
@@ -292,6 +292,9 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
     if let Some(value) = summary.restitution {
         let value = restitution(value, summary.restitution_uncertainty);
         rows.push(row("restitution", format!("**{value}**")));
+    }
+    if let Some(falling) = &summary.falling {
+        rows.push(row("restitution if the striker falls", text::falling(falling)));
     }
     match &summary.rod {
         Some(rod) => {

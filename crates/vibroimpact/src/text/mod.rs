@@ -9,7 +9,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
-use crate::summary::Summary;
+use crate::summary::{Falling, Summary};
 pub use parts::{counted, printable, quantity, shorten, significant};
 pub(crate) use parts::{filled, leaves, quantity_apart, residual, restitution, small, stopped, superscript};
 
@@ -78,6 +78,15 @@ pub fn infinite_headline(scene: &Scene, striker: &Striker) -> String {
     format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
 }
 
+/// The rebound of a striker that falls.
+pub(crate) fn falling(&Falling { restitution, rise_m, sub_impact_count }: &Falling) -> String {
+    if rise_m == 0.0 {
+        return "0: it hardly rises above the level of its first touch".to_owned();
+    }
+    let contacts = counted(sub_impact_count as u64, "sub-impact", "sub-impacts");
+    format!("{restitution:.2}: it rises by {}, after {contacts}", quantity(rise_m, "m"))
+}
+
 /// The result of an impact.
 pub fn result(summary: &Summary) -> String {
     let mut text = String::new();
@@ -93,6 +102,9 @@ pub fn result(summary: &Summary) -> String {
     if let Some(value) = summary.restitution {
         line("restitution", restitution(value, summary.restitution_uncertainty));
         line("as modelled", restitution(value, summary.uncertainty.solver));
+    }
+    if let Some(falling) = &summary.falling {
+        line("if the striker falls", self::falling(falling));
     }
     let leaves = leaves(summary.outcome);
     match &summary.rod {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::check::Check;
 use super::course::{Course, Pulse};
 use super::section::Section;
+use crate::falling::{self, GRAVITY_M_S2};
 use crate::scene::{Contact, InvalidInput, Scene, Structure};
 use crate::text::{quantity, small};
 
@@ -16,11 +17,9 @@ const CONTACT_RADIUS: [f64; 2] = [0.1, 0.3];
 const INDENTATION: [f64; 2] = [0.2, 0.5];
 const EDGE: [f64; 2] = [1.0, 0.25];
 const BALL: [f64; 2] = [5.0, 2.0];
-const GRAVITY: [f64; 2] = [0.01, 0.1];
+const GRAVITY: [f64; 2] = [falling::MATTERS, 0.1];
 /// `omega R / c_t` of the lowest mode of a ball that an impact excites.
 const OBLONG: f64 = 2.64;
-/// Acceleration of gravity (m/s^2).
-const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Checks of bending waves against the theory of bending.
 pub(super) fn waves(course: &Course, section: Option<&Section>) -> Vec<Check> {
@@ -129,11 +128,12 @@ fn ball(scene: &Scene, hardest: &Pulse) -> Option<Check> {
 /// The speed that a ball which falls on the structure gains during the interaction.
 fn gravity(scene: &Scene, course: &Course) -> Option<Check> {
     let (time_s, speed) = (course.interaction_s?, scene.striker.speed_m_s);
-    let share = STANDARD_GRAVITY * time_s / speed;
+    let share = falling::gain(time_s, speed);
     let says = format!(
-        "in {} a body falls {} and gains {} % of the speed of impact, if it falls on the structure; gravity is left out",
+        "in {} a body falls {} and gains {} % of the speed of impact, if it falls on the structure; the restitution \
+         leaves gravity out",
         quantity(time_s, "s"),
-        quantity(0.5 * STANDARD_GRAVITY * time_s * time_s, "m"),
+        quantity(0.5 * GRAVITY_M_S2 * time_s * time_s, "m"),
         small(100.0 * share)
     );
     (speed > 0.0 && share.is_finite()).then(|| Check::new("gravity", share, GRAVITY, says))
