@@ -21,7 +21,7 @@ use crate::panel::lanes::{ComplexLanes, Lanes};
 use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
-use crate::panel::vector::{LANES, sum_over, vectorized};
+use crate::panel::vector::{LANES, sum_of_lanes, sum_over, vectorized};
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
@@ -29,8 +29,8 @@ use std::sync::LazyLock;
 
 /// For a mode that turns by at most this much (rad) the coarser rule is sufficient.
 const GENTLE: f64 = 1.0;
-static COARSE: LazyLock<Series<12>> = LazyLock::new(|| Series::new(GENTLE));
-static FINE: LazyLock<Series<20>> = LazyLock::new(|| Series::new(SLOW));
+static COARSE: LazyLock<Series<3>> = LazyLock::new(|| Series::new(GENTLE));
+static FINE: LazyLock<Series<5>> = LazyLock::new(|| Series::new(SLOW));
 
 /// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
 /// upper half is left at zero.
@@ -104,48 +104,41 @@ impl Form {
 /// The rates of a mode: to a unit rate, and to unit Legendre forces.
 const RATES: usize = 1 + Q;
 
-/// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
+/// Power series of the rates at the nodes of a Gauss rule on (0, 1), in `M` groups of [`LANES`].
 struct Series<const M: usize> {
-    weights: [f64; M],
+    weights: [Lanes; M],
     /// `[i][p]`: `x^p/p!`, then `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
-    powers: [Vec<[f64; M]>; RATES],
+    powers: [Vec<[Lanes; M]>; RATES],
 }
 
 impl<const M: usize> Series<M> {
     /// For modes that turn by at most `most` (rad).
     fn new(most: f64) -> Series<M> {
         let terms = BASIS.terms::<SERIES>(most, 2);
-        let rule = rule(const { NonZeroUsize::new(M).unwrap() });
-        let places: [f64; M] = array::from_fn(|q| rule[q].0);
-        let mut powers: [_; RATES] = array::from_fn(|_| vec![[0.0; M]; terms]);
+        let rule = rule(const { NonZeroUsize::new(M * LANES).unwrap() });
+        let at_nodes = |value: &dyn Fn(usize) -> f64| -> [Lanes; M] {
+            array::from_fn(|group| Lanes::of(|lane| value(group * LANES + lane)))
+        };
+        let places = at_nodes(&|node| rule[node].0);
+        let mut powers: [_; RATES] = array::from_fn(|_| vec![[Lanes::ZERO; M]; terms]);
         let [by_rate, by_force @ ..] = &mut powers;
-        let mut power = [1.0; M];
+        let mut power = [Lanes::ONE; M];
         for (p, at) in by_rate.iter_mut().enumerate() {
             *at = power;
-            for q in 0..M {
-                power[q] *= places[q] / (p + 1) as f64;
-            }
+            power = array::from_fn(|q| power[q] * (places[q] * ((p + 1) as f64).recip()));
         }
         for (y, w) in &BASIS.fine {
-            let mut values = [[0.0; M]; Q];
-            for q in 0..M {
-                for (row, value) in values.iter_mut().zip(legendre(places[q] * y)) {
-                    row[q] = value;
-                }
-            }
-            let mut kernel = places.map(|x| w * x);
+            let polynomials: Vec<Nodal> = rule.iter().map(|(place, _)| legendre(place * y)).collect();
+            let values: [[Lanes; M]; Q] = array::from_fn(|n| at_nodes(&|node| polynomials[node][n]));
+            let mut kernel = places.map(|x| x * *w);
             for p in 0..terms {
                 for (row, values) in by_force.iter_mut().zip(&values) {
-                    for q in 0..M {
-                        row[p][q] += kernel[q] * values[q];
-                    }
+                    row[p] = array::from_fn(|q| row[p][q] + kernel[q] * values[q]);
                 }
-                for q in 0..M {
-                    kernel[q] *= places[q] * (1.0 - y) / (p + 1) as f64;
-                }
+                kernel = array::from_fn(|q| kernel[q] * (places[q] * ((1.0 - y) / (p + 1) as f64)));
             }
         }
-        Series { weights: array::from_fn(|q| rule[q].1), powers }
+        Series { weights: at_nodes(&|node| rule[node].1), powers }
     }
 
     #[inline(always)]
@@ -161,23 +154,22 @@ impl<const M: usize> Series<M> {
             (here, next) = (next, -drag * next - square * here);
         }
 
-        let mut rates = [[0.0; M]; RATES];
+        let mut rates = [[Lanes::ZERO; M]; RATES];
         for (values, powers) in rates.iter_mut().zip(&self.powers) {
             for (derivative, power) in derivatives[..terms].iter().zip(powers) {
                 for q in 0..M {
-                    values[q] += derivative * power[q];
+                    values[q] = values[q] + power[q] * *derivative;
                 }
             }
         }
         let mut means = [[0.0; RATES]; RATES];
         for n in 0..RATES {
-            let weighted: [f64; M] = array::from_fn(|q| self.weights[q] * rates[n][q]);
             for m in 0..=n {
-                [means[n][m]] = sum_over(
-                    [&weighted, &rates[m]],
-                    #[inline(always)]
-                    |[one, other]| [one * other],
-                );
+                let mut mean = Lanes::ZERO;
+                for q in 0..M {
+                    mean = mean + (self.weights[q] * rates[n][q]) * rates[m][q];
+                }
+                means[n][m] = sum_of_lanes(mean.0);
             }
         }
         let mut form = Form { bb: means[0][0], ..Form::NONE };

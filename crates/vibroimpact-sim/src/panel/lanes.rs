@@ -19,6 +19,7 @@ pub(crate) struct ComplexLanes {
 
 impl Lanes {
     pub const ZERO: Lanes = Lanes([0.0; LANES]);
+    pub const ONE: Lanes = Lanes([1.0; LANES]);
 
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> f64) -> Lanes {
