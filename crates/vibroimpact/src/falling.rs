@@ -26,6 +26,8 @@ use crate::impact::Impact;
 pub(crate) const GRAVITY_M_S2: f64 = 9.80665;
 /// Gravity matters if it adds more than this share of the speed of impact during the interaction.
 pub(crate) const MATTERS: f64 = 0.01;
+/// If it adds more than this many times that speed, the striker lies on the structure rather than strikes it.
+const MOST: f64 = 10.0;
 /// Least height of a rebound, as a share of that of the fall.
 const LEAST_RISE: f64 = 0.01;
 /// Modes that turn by more than this (rad) in the shortest contact are left out, remainder modes excepted: they hardly vibrate.
@@ -34,8 +36,9 @@ const FASTEST: f64 = 300.0;
 const TOLERANCE: f64 = 1e-4;
 /// The search ends after this many times the duration of the fall, or of the impact without gravity if that is longer.
 const DURATIONS: f64 = 4.0;
-/// It also ends after this many times the steps of the impact without gravity.
-const STEPS: u64 = 8;
+/// It also ends after this many times the steps of the impact without gravity, and this many steps of one mode.
+const STEPS: u64 = 2;
+const MODE_STEPS: u64 = 20_000;
 
 /// The rebound if the striker falls vertically on the structure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -58,7 +61,7 @@ pub(crate) fn matters(impact: &Impact, solution: &Solution) -> bool {
     let (Outcome::Rebound, [first, ..]) = (solution.outcome, &*solution.sub_impacts) else { return false };
     let held = impact.structure.modes.iter().all(|mode| mode.omega_rad_s > 0.0);
     let gained = gain(solution.end_s - first.start_s, impact.striker.speed_m_s);
-    held && impact.start.is_none() && impact.striker.mass_kg.is_finite() && gained > MATTERS
+    held && impact.start.is_none() && impact.striker.mass_kg.is_finite() && (MATTERS..MOST).contains(&gained)
 }
 
 /// Looks for the rebound under gravity, of an impact that was solved without; `None` if the computation stopped before.
@@ -82,7 +85,7 @@ pub(crate) fn falling(impact: &Impact, solution: &Solution) -> Option<Falling> {
     };
     let settings = assembly::Settings {
         tolerance: TOLERANCE,
-        max_steps: STEPS * solution.counts.steps(),
+        max_steps: STEPS * solution.counts.steps() + MODE_STEPS / structure.modes.len().max(1) as u64,
         ..assembly::Settings::until(DURATIONS * solution.end_s.max(striker.speed_m_s / GRAVITY_M_S2))
     };
     let height_m = striker.speed_m_s.powi(2) / (2.0 * GRAVITY_M_S2);
