@@ -180,6 +180,21 @@ fn motion_is_consistent() {
     }
 }
 
+/// The largest force is that of the largest compression, also where it lies next to an end of a panel.
+#[test]
+fn the_largest_force_is_that_of_the_largest_compression() {
+    for k in 0..120 {
+        let s = 10_f64.powf(-3.0 + 0.05 * f64::from(k));
+        let solution = solve(Structure::Beam, s, &once()).unwrap();
+        for (contact, force) in solution.peak_forces().into_iter().enumerate() {
+            let of_contact = solution.extrema.iter().filter(|extremum| extremum.contact == contact);
+            let compression = of_contact.map(|extremum| extremum.compression).fold(0.0, f64::max);
+            let by_law = s.sqrt() * compression.powf(1.5);
+            assert!((force / by_law - 1.0).abs() < 1e-11, "{s} {contact}: {force} {by_law}");
+        }
+    }
+}
+
 /// Thesis Table 2.1 (steel sphere, square steel beam), to 0.5 %.
 #[test]
 fn table_2_1() {

@@ -162,12 +162,13 @@ pub(super) fn turns(tables: &Tables, kind: Kind, x_series: &[f64], falling: bool
     (found, falling)
 }
 
-/// The largest value of a force on a panel.
+/// The largest value of a force on a panel. It may lie between a sample at either end and the next one.
 pub(super) fn largest(sample: &[f64], f_series: &[f64]) -> f64 {
     let value = |s: f64| series(f_series, s);
+    let slope = |s: f64| series_slope(f_series, s);
     let values: Vec<f64> = sample.iter().map(|&s| value(s)).collect();
     let best = (0..sample.len()).max_by(|&i, &j| values[i].total_cmp(&values[j])).unwrap_or(0);
-    let turn = (best > 0 && best + 1 < sample.len())
-        .then(|| root(sample[best - 1], sample[best + 1], EXACTLY, |s| series_slope(f_series, s)));
-    turn.into_iter().filter(|s| (0.0..=1.0).contains(s)).map(value).fold(value(sample[best]), f64::max)
+    let (before, after) = (sample[best.saturating_sub(1)], sample[(best + 1).min(sample.len() - 1)]);
+    let turn = (slope(before) > 0.0 && slope(after) < 0.0).then(|| value(root(before, after, EXACTLY, slope)));
+    turn.map_or(values[best], |turn| turn.max(values[best]))
 }
