@@ -53,6 +53,22 @@ fn cantilever(n: usize, damping_ratio: f64, places: &[f64]) -> (Vec<BodyMode>, V
     (modes.omega_rad_s().iter().map(of).collect(), shapes)
 }
 
+/// Hertz contact with a wall takes all kinetic energy before the compression turns, also where this is on the panel on which the
+/// force begins.
+#[test]
+fn a_wall_takes_all_energy_by_work_of_compression() {
+    for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
+        for share in [0.3, 0.5, 0.7, 0.9] {
+            let law = Hertz::new(1e9 * 2_f64.powf(-2.5 * share)).unwrap().into();
+            let contacts = vec![Contact { sides: [mass(0, 0.1), Point::Ground], gap_m: 0.0, law }];
+            let bodies = vec![Body::mass(0.1, 1e-3, -1.0)];
+            let (found, _) = solve(&Assembly { bodies, contacts, loads: vec![] }, 0.01, tolerance);
+            let error = (compression_work(&found) / 0.05 - 1.0).abs();
+            assert!(error < 1e-2 * tolerance, "{tolerance:e} {share}: {error:e}");
+        }
+    }
+}
+
 /// A ball on a cantilever, whose tip meets a stop and another cantilever.
 fn three_contacts(damping_ratio: f64, loads: impl Fn(&[Vec<f64>]) -> Vec<Load>) -> Assembly<Law> {
     let (modes, shapes) = cantilever(6, damping_ratio, &[0.5, 1.0, 0.8]);

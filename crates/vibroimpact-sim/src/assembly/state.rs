@@ -138,7 +138,7 @@ impl State {
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * force.mean();
         statistics.squared_force_n2_s += h * dot(&BASIS.weights, &std::array::from_fn(|i| nodal[i] * nodal[i]));
-        statistics.compression_work_j += h * compression_work(solved, &force, rate, ends_of_rate);
+        statistics.compression_work_j += compression_work(work_j, h, solved, &force, rate, ends_of_rate);
         statistics.work_j += work_j;
     }
 
@@ -173,24 +173,18 @@ impl State {
     }
 }
 
-/// Work of compression on a panel of unit length: the integral of force times rate over the parts on which the rate is positive.
-fn compression_work(solved: &Collocated, force: &Legendre, rate: &Nodal, ends: [f64; 2]) -> f64 {
+/// Work of compression on a panel of `h` (J): that on the contact over the parts on which the rate is positive.
+fn compression_work(work_j: f64, h: f64, solved: &Collocated, force: &Legendre, rate: &Nodal, ends: [f64; 2]) -> f64 {
     let everywhere = |holds: fn(f64) -> bool| rate.iter().chain(&ends).all(|rate| holds(*rate));
     if everywhere(|rate| rate >= 0.0) {
-        return dot(&BASIS.weights, &std::array::from_fn(|i| solved.force[i] * rate[i]));
+        return work_j;
     }
     if everywhere(|rate| rate <= 0.0) {
         return 0.0;
     }
     let (rates, quotient) = (Legendre::through(rate), solved.quotient(force));
     let ends = rates.at_ends();
-    let between = |from: f64, to: f64| {
-        let power = |i: usize| {
-            let place = from + (to - from) * BASIS.nodes[i];
-            solved.ends.value(&quotient, place) * rates.at(place)
-        };
-        (to - from) * dot(&BASIS.weights, &std::array::from_fn(power))
-    };
+    let between = |from: f64, to: f64| h * solved.ends.integral(&quotient, |place| rates.at(place), from, to);
     let places = BASIS.nodes.iter().zip(rate).map(|(place, rate)| (*place, *rate)).chain([(1.0, ends[1])]);
     let (mut work, mut from, mut before) = (0.0, 0.0, (0.0, ends[0]));
     for next in places {

@@ -8,6 +8,7 @@
 
 use super::legendre::{BASIS, Legendre, Matrix, Nodal, Q, apply, legendre};
 use gauss_quad::legendre::GaussLegendre;
+use gauss_quad::{FiniteAboveNegOneF64, GaussJacobi};
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
@@ -29,6 +30,14 @@ struct Weight {
     /// `1/w` at the nodes.
     inverse: Nodal,
 }
+
+/// Gauss's rule on (0, 1) with the weight `s^(3/2)`: node and weight.
+static BEGINNING: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
+    let [flat, rising] = [0.0, EXPONENT].map(|power| FiniteAboveNegOneF64::new(power).unwrap());
+    let rule = GaussJacobi::new(const { NonZeroUsize::new(Q).unwrap() }, flat, rising);
+    let scale = 0.5_f64.powf(EXPONENT + 1.0);
+    rule.as_node_weight_pairs().iter().map(|(x, weight)| (0.5 * (1.0 + x), scale * weight)).collect()
+});
 
 static WEIGHTS: LazyLock<[Weight; 3]> = LazyLock::new(|| {
     [(true, false), (false, true), (true, true)].map(|(at_start, at_end)| Weight::new(Ends { at_start, at_end }))
@@ -102,6 +111,22 @@ impl Ends {
     /// The force at `s`, from `P`.
     pub fn value(self, quotient: &Legendre, s: f64) -> f64 {
         if self.is_smooth() { quotient.at(s) } else { self.at(s) * quotient.at(s) }
+    }
+
+    /// Integral of the force times another function over `from < s < to`, from `P`. The rule has the force's beginning as its weight,
+    /// but not its end.
+    pub fn integral(self, quotient: &Legendre, factor: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+        let begins = self.at_start && from == 0.0;
+        let rest = Ends { at_start: self.at_start && !begins, ..self };
+        let part = |(node, weight): (f64, f64)| {
+            let s = from + (to - from) * node;
+            weight * rest.value(quotient, s) * factor(s)
+        };
+        if begins {
+            to.powf(EXPONENT + 1.0) * BEGINNING.iter().copied().map(part).sum::<f64>()
+        } else {
+            (to - from) * BASIS.nodes.into_iter().zip(BASIS.weights).map(part).sum::<f64>()
+        }
     }
 
     /// Place and value of the maximum of the force, from `P`.
