@@ -309,6 +309,25 @@ fn stiff_contacts_on_a_plate_end() {
     }
 }
 
+/// Felt that slackens before it is released by a plate, whose velocity follows the force at once. Restitutions are those of an
+/// integration in 80-bit arithmetic.
+#[test]
+fn felt_on_a_plate_slackens_once() {
+    for (k, exponent, retardation, expected) in [
+        (0.493, 2.36, 0.00908, 0.2374577151061193),
+        (0.322, 2.33, 0.0133, 0.2791955613262708),
+        (1.217, 2.5, 0.00758, 0.157369751889055),
+        (0.2378, 2.74, 0.00667, 0.2787159118886937),
+        (3.95, 2.5, 0.00834, 0.0836976731264791),
+        (24.63, 2.5, 0.00814, 0.0256947900688118),
+    ] {
+        let found = run(&power(0.0), &Felt::new(k, exponent, retardation).unwrap());
+        let error = (found.rebound_ratio().unwrap() - expected).abs();
+        assert!(error < 1e-14, "{k} {exponent} {retardation}: {error:e}");
+        assert!(found.panels_tried < 100, "{k} {exponent} {retardation}: {}", found.panels_tried);
+    }
+}
+
 /// Springs and dashpots of sizes far apart on beam and plate: the panels do not resolve rounding (the softest would take more than
 /// 200,000), and rounding is not taken for a fault of the law.
 #[test]

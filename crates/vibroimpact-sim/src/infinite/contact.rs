@@ -16,7 +16,7 @@ use super::flight::Departure;
 use super::free::REACH;
 use super::history::{History, Impulse};
 use super::kernel::Kernel;
-use super::law::{Margin, Scaled};
+use super::law::{Force, Margin, Scaled};
 use super::natural_times::NaturalTimes;
 use super::panel::{Panel, Turn, curvature, end_acceleration, largest, turns, variable};
 use super::past::{FreeMotion, Solved};
@@ -255,17 +255,19 @@ impl<'a> Contact<'a> {
                 }
                 let landed = if length <= shortest {
                     at_once += 1;
-                    at_once <= MOST_AT_ONCE
+                    if at_once > MOST_AT_ONCE {
+                        return stopped(StopReason::Law);
+                    }
+                    true
                 } else {
-                    at_once = 0;
                     kind == Kind::Middle && self.land(event, length)
                 };
-                if at_once > MOST_AT_ONCE {
-                    return stopped(StopReason::Law);
-                }
                 if !landed {
                     h = (0.5 * length).max(0.5 * shortest);
                     continue;
+                }
+                if length > shortest {
+                    at_once = 0;
                 }
                 match self.law.cross(&self.branch, event.which, self.x, self.rate) {
                     After::Release(memory) => return Ending::Released(memory),
@@ -426,7 +428,7 @@ impl<'a> Contact<'a> {
         let tables = self.kernel.tables;
         self.pose(kind, h);
         let hinted = self.hint.take().map(|hint| self.guess_from(&hint, kind, h));
-        let nodal = match hinted.map(|guess| self.solve(guess)) {
+        let mut nodal = match hinted.map(|guess| self.solve(guess)) {
             Some(Ok(nodal)) => nodal,
             _ => self.solve(self.guess(kind, h))?,
         };
@@ -435,6 +437,9 @@ impl<'a> Contact<'a> {
         self.hint =
             Some(Hint { kind, start: self.since, h, x_series: x_series.clone(), rate_series: rate_series.clone() });
         let f_series = tables.coefficients(&nodal.force);
+        if self.follows_rate && self.kernel.instant() > 0.0 {
+            self.end_by_law(&mut nodal, series(&f_series, variable(kind, 1.0)));
+        }
         let tail = f_series[tables.p - 2..].iter().fold(0.0_f64, |tail, c| tail.max(c.abs()));
         let impulse_scale = self.scale_after(h, &nodal.force);
         let mut allowed = (self.settings.tolerance * impulse_scale).max(f64::MIN_POSITIVE);
@@ -451,6 +456,21 @@ impl<'a> Contact<'a> {
         }
         let unresolved = tail * h / allowed;
         Ok(Trial { kind, h, nodal, x_series, rate_series, f_series, impulse_scale, unresolved, is_rounding })
+    }
+
+    /// Sets the rate at the end of a panel anew where a part of it follows the force at once: that force is the law's, and the
+    /// `polynomial` of the panel deviates from it by the allowed error. The next branch would begin beyond its boundary.
+    fn end_by_law(&self, nodal: &mut Nodal, polynomial: f64) {
+        let (p, instant) = (nodal.force.len(), self.kernel.instant());
+        let (x, mut rate) = (nodal.x[p], nodal.rate[p]);
+        let without_force = rate + instant * polynomial;
+        for _ in 0..4 {
+            let Force { force, damping, .. } = self.law.force(&self.branch, x, rate);
+            rate -= (rate - without_force + instant * force) / (1.0 + instant * damping);
+        }
+        if rate.is_finite() {
+            nodal.rate[p] = rate;
+        }
     }
 
     /// Solves the equations that are set, from a guess.
