@@ -57,13 +57,14 @@ impl Hysteretic {
     /// A stiffness, `theta_m` or `K` that is not positive (`K` at most 1000), a negative `beta` or `eps`, or
     /// `beta > 1 + theta_m`, for which the force would be tensile.
     pub fn validated(self) -> Result<Hysteretic, InvalidInput> {
-        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         require_positive("theta_m", self.theta_m)?;
         let pushes = (0.0..=1.0 + self.theta_m).contains(&self.beta);
         InvalidInput::unless(pushes, "beta", self.beta, "a number from 0 to 1 + theta_m")?;
         let in_range = (SMALLEST..=1000.0).contains(&self.k_bar);
         InvalidInput::unless(in_range, "k_bar", self.k_bar, "a number greater than 0 (from 1e-30 to 1000)")?;
         require_not_negative("epsilon_m", self.epsilon_m)?;
+        // last, since a scene may have it from materials and the width of the loop
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         Ok(self)
     }
 

@@ -259,7 +259,7 @@ impl Scene {
         left_out("residual_compliance".into(), self.residual_compliance.map(|on| on.to_string()))?;
         left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
         let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
-        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.first() {
+        let drop = rod.drop(speed_m_s).map_err(|fault| match fault.field.first() {
             Some("speed_m_s") => fault.within("striker"),
             _ => fault.within("structure"),
         })?;

@@ -394,8 +394,12 @@ fn errors_name_the_field_that_has_to_change() {
             "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1e9 }} }}"#
         )
     };
+    let rod = r#"{ "structure": { "kind": "dropped-rod", "length_m": 0.2, "diameter_m": 1e15, "youngs_modulus_pa": 2e11,
+        "density_kg_m3": 7800, "poissons_ratio": 0.3, "inclination_deg": 45 }, "striker": { "speed_m_s": 1 },
+        "contact": { "law": "hertz" } }"#;
     let folder = folder(&[
         ("infinite.json", infinite),
+        ("rod.json", rod),
         ("fast.json", &infinite.replace("0.5", "1e300")),
         ("weightless.json", weightless),
         ("light.json", light),
@@ -462,6 +466,32 @@ fn errors_name_the_field_that_has_to_change() {
         (&["sensitivity", "alone.json"], "contacts = [] is not allowed"),
         (&["simulate", "name.json"], r#"bodies = "a\u{1b}" is not allowed"#),
         (&["simulate", "contact.json"], r#"contacts[0].name = "c\0" is not allowed"#),
+        (
+            &["simulate", "rod.json"],
+            "structure.diameter_m = 1000000000000000.0 is not allowed; it must be such that the flexural rigidity, now",
+        ),
+        (
+            &["simulate", "steel.json", "--set", "contact.youngs_modulus_pa=1e-30"],
+            "contact.youngs_modulus_pa = 1e-30 is not allowed; it must be such that the stiffness of the contact, now",
+        ),
+        (
+            &[
+                "simulate",
+                "steel.json",
+                "--set",
+                r#"contact={"law":"elastoplastic","youngs_modulus_pa":1e-30,"poissons_ratio":0.3,"yield_pressure_pa":1}"#,
+            ],
+            "contact.youngs_modulus_pa = 1e-30 is not allowed; it must be such that the effective modulus of the contact, now",
+        ),
+        (
+            &[
+                "simulate",
+                "steel.json",
+                "--set",
+                r#"contact={"law":"hysteretic","youngs_modulus_pa":2e11,"poissons_ratio":0.3,"theta_m":1e308,"beta":1,"k_bar":1}"#,
+            ],
+            "contact.theta_m = 1e+308 is not allowed; it must be a number greater than 0",
+        ),
         (
             &["modes", "steel.json", "--set", "structure.segments[0].thickness_m=1e-60"],
             "structure.segments[0].thickness_m = 1e-60 is not allowed; it must be such that the flexural rigidity, now 2e-172,",

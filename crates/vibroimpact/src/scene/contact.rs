@@ -222,9 +222,14 @@ impl Contact {
             }
             Contact::Hysteretic { stiffness, theta_m, beta, k_bar, epsilon_m } => {
                 let share = if stiffness.is_given() { 1.0 } else { 1.0 + theta_m + beta };
-                Hysteretic { stiffness_n_m1_5: stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m }
-                    .validated()
-                    .map(Law::from)
+                let stiffness_n_m1_5 = stiffness.of(striker)? / share;
+                match (Hysteretic { stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m }).validated() {
+                    Err(fault) if fault.field == "stiffness_n_m1_5" && !stiffness.is_given() => {
+                        let quantity = "stiffness of the contact over 1 + theta_m + beta";
+                        return Err(stiffness.materials.follows(quantity, &fault, striker));
+                    }
+                    law => law.map(Law::from),
+                }
             }
             Contact::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m).map(Law::from),
             Contact::Power { stiffness_n_m_n, exponent } => Power::new(stiffness_n_m_n, exponent).map(Law::from),
@@ -268,7 +273,12 @@ impl Contact {
             }
             Contact::Elastoplastic { materials, yield_pressure_pa } => {
                 let (ball, structure) = materials.bodies(striker)?;
-                Thornton::from_bodies(&ball, &structure, yield_pressure_pa).map(Law::from)
+                match Thornton::from_bodies(&ball, &structure, yield_pressure_pa) {
+                    Err(fault) if fault.field == "effective_modulus_pa" => {
+                        return Err(materials.follows("effective modulus of the contact", &fault, striker));
+                    }
+                    law => law.map(Law::from),
+                }
             }
         };
         law.map_err(|fault| match fault.field.first() {

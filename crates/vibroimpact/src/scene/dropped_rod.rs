@@ -9,6 +9,7 @@ use vibroimpact_sim::dropped_rod;
 use vibroimpact_sim::modal::Mode;
 
 use super::damping::require_damping;
+use super::extreme::follows_from;
 use super::fields;
 use super::json::number;
 
@@ -55,7 +56,7 @@ impl DroppedRod {
     /// The rod as input of the solver.
     ///
     /// # Errors
-    /// An inclination or a damping ratio out of range; [`dropped_rod::DroppedRod::drop`] checks the rest.
+    /// An inclination or a damping ratio out of range; [`DroppedRod::drop`] checks the rest.
     pub fn to_rod(&self) -> Result<dropped_rod::DroppedRod, InvalidInput> {
         if !(0.0..=90.0).contains(&self.inclination_deg) {
             let allowed = fields::allowed("inclination_deg").unwrap_or_default();
@@ -75,13 +76,27 @@ impl DroppedRod {
         })
     }
 
-    fn at_unit_speed(&self) -> Result<dropped_rod::Drop, InvalidInput> {
-        self.to_rod()?.drop(1.0)
+    /// The fall of the rod with this speed at first touch (m/s).
+    ///
+    /// # Errors
+    /// A number out of range; those of the section are named by the field from which they follow.
+    pub fn drop(&self, speed_m_s: f64) -> Result<dropped_rod::Drop, InvalidInput> {
+        self.to_rod()?.drop(speed_m_s).map_err(|fault| {
+            let by_modulus = ("youngs_modulus_pa", self.youngs_modulus_pa);
+            let by_density = ("density_kg_m3", self.density_kg_m3);
+            let (quantity, material) = match fault.field.last() {
+                Some("flexural_rigidity_n_m2") => ("flexural rigidity", by_modulus),
+                Some("axial_rigidity_n") => ("axial rigidity", by_modulus),
+                Some("mass_per_length_kg_m") => ("mass per length", by_density),
+                _ => return fault,
+            };
+            follows_from(quantity, &fault, &[material, ("diameter_m", self.diameter_m)])
+        })
     }
 
     /// Rigid-body motions and modes with their shapes at the end that strikes, from the lowest frequency.
     pub(super) fn modes(&self) -> Result<Vec<Mode>, InvalidInput> {
-        let drop = self.at_unit_speed()?;
+        let drop = self.drop(1.0)?;
         let mut modes = drop.structure.modes;
         modes.truncate(modes.len() - drop.remainder_modes);
         modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));

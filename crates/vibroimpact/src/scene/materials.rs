@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Striker;
 use super::error::require_positive;
+use super::extreme::follows_from;
 use super::ranges::POSITIVE;
 use super::sets::one_of_sets;
 
@@ -83,6 +84,15 @@ impl Materials {
         })?;
         Ok((ball, structure))
     }
+
+    /// The error of a quantity that follows from materials and radius, as that of the most extreme of their fields.
+    pub(super) fn follows(&self, quantity: &str, fault: &InvalidInput, striker: &Striker) -> InvalidInput {
+        let moduli = [EACH[0], EACH[2]].into_iter().zip([self.youngs_modulus_pa, self.striker_youngs_modulus_pa]);
+        let given = moduli.chain([("radius_m", striker.radius_m)]);
+        let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
+        let fault = follows_from(quantity, fault, &fields);
+        if fault.field == "radius_m" { fault.within("striker") } else { in_contact(fault) }
+    }
 }
 
 impl HertzStiffness {
@@ -115,7 +125,7 @@ impl HertzStiffness {
         let (ball, structure) = self.materials.bodies(striker)?;
         Hertz::from_bodies(&ball, &structure)
             .map(|hertz| hertz.stiffness_n_m1_5)
-            .map_err(|fault| fault.within("striker"))
+            .map_err(|fault| self.materials.follows("stiffness of the contact", &fault, striker))
     }
 
     /// The stiffness and exponent of a general power law, which cannot be combined with the fields of Hertz's law.

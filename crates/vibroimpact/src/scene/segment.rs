@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 
 use beam_modes::RectangularSegment;
-use invalid_input::{InvalidInput, Value};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::require_positive;
-use super::extreme::{of_product, require_product};
+use super::extreme::{follows_from, require_product};
 use super::fields;
 use super::json::number;
 use super::sets::one_of_sets;
@@ -175,8 +175,7 @@ impl Segment {
         let sizes = [("width_m", self.width_m), ("thickness_m", self.thickness_m), ("diameter_m", self.diameter_m)];
         let given = [material].into_iter().chain(sizes);
         let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
-        let Some(Value::Number(found)) = fault.value else { return None };
-        (!fields.is_empty()).then(|| of_product(quantity, found, &fields, &fault.allowed))
+        (!fields.is_empty()).then(|| follows_from(quantity, fault, &fields))
     }
 
     /// Shear and rotary inertia, or `None` if neither is given.
