@@ -405,6 +405,10 @@ fn errors_name_the_field_that_has_to_change() {
         ("light.json", light),
         ("wide.json", &infinite.replace("\"width_m\": 0.028", "\"width_m\": 1e300")),
         ("slow.json", &load(r#""force_n": 1, "frequency_hz": 1e-300"#)),
+        (
+            "shaken.json",
+            &bodies.replace(r#""end_s""#, r#""ground_motion": { "displacement_m": 1e-3, "frequency_hz": 5 }, "end_s""#),
+        ),
         ("short.json", &load(r#""times_s": [], "forces_n": []"#)),
         ("table.json", &load(r#""file": "empty.csv""#)),
         ("empty.csv", "time_s,force_n\n"),
@@ -461,6 +465,14 @@ fn errors_name_the_field_that_has_to_change() {
         ),
         (&["infinite-beam", "--s", "1", "--set", "a=1"], "'--s <S>' cannot be used with '--set <FIELD=VALUE>'"),
         (&["simulate", "slow.json"], "loads[0].frequency_hz = 1e-300"),
+        (
+            &["simulate", "shaken.json", "--set", "ground_motion.displacement_m=1e29"],
+            "ground_motion.displacement_m = 1e+29 is not allowed; it must be such that the acceleration of the ground in m/s^2, now",
+        ),
+        (
+            &["simulate", "shaken.json", "--set", "ground_motion.frequency_hz=1e20"],
+            "ground_motion.frequency_hz = 1e+20 is not allowed; it must be such that the acceleration of the ground in m/s^2, now",
+        ),
         (&["simulate", "short.json"], "of at least two values each"),
         (&["simulate", "table.json"], "empty.csv, number of rows = 0 is not allowed; it must be at least 2"),
         (&["sensitivity", "alone.json"], "contacts = [] is not allowed"),

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use invalid_input::most_extreme;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::assembly::Force;
@@ -12,7 +13,7 @@ use super::fields::FREQUENCY;
 use super::schema::courses;
 use crate::input::{Table, read_bytes};
 use crate::scene::json::number;
-use crate::scene::{InvalidInput, Location, SceneError, table_path};
+use crate::scene::{InvalidInput, Location, SceneError, such_that, table_path};
 
 /// A force on a point of a body, positive along `+x`: constant (`force_n`), harmonic (`force_n sin(2 pi frequency_hz t +
 /// phase)`), or straight lines between values (`times_s` and `forces_n`, or a table), zero before the first and after the
@@ -211,8 +212,10 @@ impl GroundMotion {
             }
             (Some(_), None) => match course(("displacement_m", self.displacement_m)).to_force()? {
                 // the second derivative of a sine
-                Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
-                    Ok(Force::Harmonic { force_n: -force_n * omega_rad_s * omega_rad_s, omega_rad_s, phase_rad })
+                Force::Harmonic { force_n: displacement_m, omega_rad_s, phase_rad } => {
+                    let force_n = -displacement_m * omega_rad_s * omega_rad_s;
+                    require_acceleration(force_n, displacement_m, self.frequency_hz.unwrap_or_default())?;
+                    Ok(Force::Harmonic { force_n, omega_rad_s, phase_rad })
                 }
                 other => Ok(other),
             },
@@ -228,6 +231,17 @@ impl GroundMotion {
         }
         Ok(())
     }
+}
+
+/// Refuses an acceleration that is out of range under the more extreme of the fields from which it follows.
+fn require_acceleration(acceleration_m_s2: f64, displacement_m: f64, frequency_hz: f64) -> Result<(), InvalidInput> {
+    require_finite("acceleration_m_s2", acceleration_m_s2).map_err(|fault| {
+        // relative to usual sizes
+        let fields = [("displacement_m", displacement_m, 1e-3), ("frequency_hz", frequency_hz, 1e2)];
+        let relative = fields.map(|(field, value, usual)| ((field, value), value / usual));
+        let ((field, value), _) = most_extreme(relative).unwrap_or_default();
+        InvalidInput::new(field, number(value), such_that("the acceleration of the ground in m/s^2", &fault))
+    })
 }
 
 fn refuse_lists(lists: &[(&str, &Vec<f64>)]) -> Result<(), InvalidInput> {
