@@ -77,7 +77,7 @@ pub struct Statistics {
     pub largest_force_n: f64,
     /// Root mean square of the force over this time (N).
     pub rms_force_n: f64,
-    /// Work of compression over this time (W).
+    /// Work of the force while the compression grows, over this time (W).
     pub contact_work_rate_w: f64,
 }
 
