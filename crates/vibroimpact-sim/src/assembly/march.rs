@@ -66,7 +66,7 @@ impl<'a> March<'a> {
             self.stop = self.stop.or_else(|| self.limit());
         };
         for c in 0..self.states.len() {
-            if let Some(interval) = self.states[c].finish(None) {
+            if let Some(interval) = self.states[c].finish(self.laws[c], None) {
                 self.observer.interval(c, &interval);
             }
         }

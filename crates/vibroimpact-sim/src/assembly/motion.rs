@@ -280,7 +280,7 @@ impl<'a> March<'a> {
     /// Begins the statistics of all contacts anew.
     pub(super) fn begin_statistics(&mut self) {
         self.statistics_from_s = f64::INFINITY;
-        self.states.iter_mut().for_each(State::begin_statistics);
+        self.states.iter_mut().zip(self.laws).for_each(|(state, law)| state.begin_statistics(*law));
     }
 
     /// Discards what was predicted of the motion: the next event, the length of a terminal panel before it, and how long contacts stay

@@ -4,10 +4,11 @@ use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
 use crate::panel::ends::Ends;
+use crate::panel::interpolant::Interpolant;
 use crate::panel::legendre::{BASIS, Legendre, Nodal, dot, work_of_unit_forces};
-use crate::panel::peak::Peak;
+use crate::panel::peak::{Peak, turning_point};
 use crate::panel::root::{EXACTLY, root};
-use contact_models::{Boundary, Branch, Memory};
+use contact_models::{Boundary, Branch, ContactLaw, Memory};
 
 /// A contact at a moment.
 #[derive(Debug, Clone)]
@@ -62,8 +63,43 @@ pub(crate) struct ClosedContact {
     /// The present interval, with the largest force until statistics began.
     pub interval: Interval,
     /// Largest force and compression since then.
-    pub peak_force: Peak,
-    pub peak_compression: Peak,
+    pub peak_force: Peak<Course>,
+    pub peak_compression: Peak<Interpolant>,
+}
+
+/// How a contact moves on a panel: its branch, its overlap (m) and its rate (m/s; zero unless the force may depend on it).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course {
+    branch: Branch,
+    overlap: Interpolant,
+    rate: Interpolant,
+}
+
+impl Course {
+    /// The force by the law near a place. On a panel the overlap is known more accurately than the polynomial of the force, which
+    /// satisfies the law at the nodes alone.
+    fn largest_force(&self, law: &dyn ContactLaw, place: f64) -> f64 {
+        let (overlap, rate) = (self.overlap.evaluable(), self.rate.evaluable());
+        let force = |s: f64| law.force(&self.branch, overlap.at(s)[0], rate.at(s)[0]);
+        let slope = |s: f64| {
+            let force = force(s);
+            force.per_compression_n_m * overlap.at(s)[1] + force.per_rate_n_s_m * rate.at(s)[1]
+        };
+        force(turning_point(place, slope)).force_n
+    }
+}
+
+/// The largest overlap near a place on a panel.
+fn largest_overlap(overlap: &Interpolant, place: f64) -> f64 {
+    let overlap = overlap.evaluable();
+    overlap.at(turning_point(place, |s| overlap.at(s)[1]))[0]
+}
+
+impl ClosedContact {
+    /// The largest force since statistics began (N).
+    fn peak_force_n(&self, law: &dyn ContactLaw) -> f64 {
+        self.peak_force.value(|course, place| course.largest_force(law, place))
+    }
 }
 
 impl State {
@@ -124,16 +160,27 @@ impl State {
 
     /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and as a polynomial, its
     /// compression and rate at the nodes and at the end.
-    pub fn accept(&mut self, h: f64, solved: &Collocated, force: Legendre, rate: &Nodal, (end, end_rate): (f64, f64)) {
-        let Collocated { force: nodal, ends, compression, .. } = solved;
+    pub fn accept(
+        &mut self,
+        law: &dyn ContactLaw,
+        h: f64,
+        solved: &Collocated,
+        force: Legendre,
+        rate: &Nodal,
+        (end, end_rate): (f64, f64),
+    ) {
+        let Collocated { force: nodal, ends, compression, rate: exact_rate, .. } = solved;
         let work_j = self.work_j(&force, compression, end);
         let ends_of_rate = [self.rate, end_rate];
+        let overlap = Interpolant::new(compression, [self.overlap, end]);
         let Phase::Closed(contact) = &mut self.phase else { return };
         contact.begins = false;
         contact.previous = Some((force, h));
         contact.interval.impulse_n_s += h * force.mean();
-        contact.peak_force.note(nodal, *ends);
-        contact.peak_compression.note(compression, Ends::SMOOTH);
+        let rate_if_needed = if contact.force_by_rate { ends_of_rate } else { [0.0; 2] };
+        let course = Course { branch: contact.branch, overlap, rate: Interpolant::new(exact_rate, rate_if_needed) };
+        contact.peak_force.note(nodal, *ends, course, |course, place| course.largest_force(law, place));
+        contact.peak_compression.note(compression, Ends::SMOOTH, overlap, largest_overlap);
         let statistics = &mut self.statistics;
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * force.mean();
@@ -149,20 +196,20 @@ impl State {
     }
 
     /// Begins the statistics anew, with the rest of an interval of contact.
-    pub fn begin_statistics(&mut self) {
+    pub fn begin_statistics(&mut self, law: &dyn ContactLaw) {
         self.statistics = Statistics::default();
         if let Some(contact) = self.closed_contact_mut() {
-            contact.interval.peak_force_n = contact.peak_force.value().max(contact.interval.peak_force_n);
+            contact.interval.peak_force_n = contact.peak_force_n(law).max(contact.interval.peak_force_n);
             contact.peak_force = Peak::NONE;
         }
     }
 
     /// The interval that ends now.
-    pub fn finish(&mut self, released: Option<(f64, f64)>) -> Option<Interval> {
+    pub fn finish(&mut self, law: &dyn ContactLaw, released: Option<(f64, f64)>) -> Option<Interval> {
         let Phase::Closed(contact) = &mut self.phase else { return None };
-        let peak_force_n = contact.peak_force.value();
+        let peak_force_n = contact.peak_force_n(law);
         contact.interval.peak_force_n = peak_force_n.max(contact.interval.peak_force_n);
-        contact.interval.peak_compression_m = contact.peak_compression.value();
+        contact.interval.peak_compression_m = contact.peak_compression.value(largest_overlap);
         if let Some((time_s, rate)) = released {
             contact.interval.end_s = Some(time_s);
             contact.interval.separation_speed_m_s = Some(-rate);

@@ -230,7 +230,7 @@ impl<'a> March<'a> {
                 let (now, rate) = (self.time_s, self.states[c].rate);
                 // surfaces that part where they have met, under the forces of other contacts, were not in contact
                 let lasted = contact.interval.start_s < now;
-                if lasted && let Some(interval) = self.states[c].finish(Some((now, rate))) {
+                if lasted && let Some(interval) = self.states[c].finish(law, Some((now, rate))) {
                     self.observer.interval(c, &interval);
                     self.intervals += 1;
                 }

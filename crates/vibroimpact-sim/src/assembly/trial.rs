@@ -212,7 +212,7 @@ impl<'a> March<'a> {
             let state = &mut self.states[c];
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
-                state.accept(h, &solved[i], force[i], &rate, end(i));
+                state.accept(self.laws[c], h, &solved[i], force[i], &rate, end(i));
             }
             (state.overlap, state.rate) = end(i);
         }

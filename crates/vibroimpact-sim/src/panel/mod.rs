@@ -4,6 +4,7 @@ pub(crate) mod by_damping;
 pub(crate) mod dyadic;
 pub(crate) mod ends;
 pub(crate) mod forcing;
+pub(crate) mod interpolant;
 pub(crate) mod lanes;
 pub(crate) mod legendre;
 pub(crate) mod oscillator;

@@ -1,34 +1,49 @@
 //! The largest value of a quantity over many panels.
 
 use super::ends::Ends;
-use super::legendre::{Legendre, Nodal, Q};
+use super::legendre::{Legendre, Nodal};
+use super::root::root;
 
-/// The largest value of a quantity over the steps of a contact. It lies in the step with the largest nodal value or in one beside
-/// it: a maximum beside the end of a long step can lie above its nodes by more than above those of the short step that adjoins it.
-/// What the nodal values of these steps represent is searched when the contact has ended.
+/// The largest value of a quantity over the steps of a contact, hump by hump of the largest nodal values of the steps: a hump with
+/// lower nodal values than another may be higher between its nodes. The maximum of a hump lies in its step with the largest nodal
+/// value or in one beside it: a maximum beside the end of a long step can lie above its nodes by more than above those of the short
+/// step that adjoins it. What the nodal values of these steps represent is searched when the hump has ended. `M` is what else is known
+/// of a step, by which the maximum of the polynomial through its nodes is improved.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Peak {
-    highest: Step,
-    before: Step,
-    after: Option<Step>,
-    last: Step,
+pub(crate) struct Peak<M> {
+    at_nodes: f64,
+    of_earlier_humps: f64,
+    before: Option<Step<M>>,
+    highest: Option<Step<M>>,
+    after: Option<Step<M>>,
+    last: Option<Step<M>>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Step {
+struct Step<M> {
     largest: f64,
     nodal: Nodal,
     ends: Ends,
+    more: M,
 }
 
-/// A step beside the highest one is searched if its largest nodal value is at least this part of the other.
+/// A step or a hump is searched if its largest nodal value is at least this part of the highest one.
 const CLOSE: f64 = 0.8;
+/// Distance from the place of the maximum of a polynomial within which that of the quantity is searched, and its accuracy.
+const BESIDE: f64 = 1.0 / 16.0;
+const WITHIN: f64 = 1e-9;
 
-impl Step {
-    const NONE: Step = Step { largest: 0.0, nodal: [0.0; Q], ends: Ends::SMOOTH };
+/// The place of the maximum of a quantity with this slope on a step, from that of the polynomial through its nodes.
+pub(crate) fn turning_point(place: f64, slope: impl Fn(f64) -> f64) -> f64 {
+    let [from, to] = [(place - BESIDE).max(0.0), (place + BESIDE).min(1.0)];
+    let turns = slope(from) > 0.0 && slope(to) < 0.0;
+    if turns { root(from, to, WITHIN, slope).clamp(from, to) } else { place }
+}
 
-    fn maximum(&self) -> f64 {
-        self.largest.max(self.ends.maximum(&self.ends.quotient(&self.nodal)).1)
+impl<M> Step<M> {
+    fn maximum(&self, improve: &impl Fn(&M, f64) -> f64) -> f64 {
+        let (place, _) = self.ends.maximum(&self.ends.quotient(&self.nodal));
+        self.largest.max(improve(&self.more, place))
     }
 
     /// Whether its values fall towards the highest step, which adjoins its end or its start. Its maximum then lies inside it.
@@ -38,31 +53,43 @@ impl Step {
     }
 }
 
-impl Peak {
-    pub const NONE: Peak = Peak { highest: Step::NONE, before: Step::NONE, after: None, last: Step::NONE };
+impl<M: Copy> Peak<M> {
+    pub const NONE: Peak<M> =
+        Peak { at_nodes: 0.0, of_earlier_humps: 0.0, before: None, highest: None, after: None, last: None };
 
-    pub fn note(&mut self, nodal: &Nodal, ends: Ends) {
-        let step = Step { largest: nodal.iter().fold(0.0, |a: f64, b| a.max(*b)), nodal: *nodal, ends };
-        if step.largest > self.highest.largest {
-            (self.before, self.highest, self.after) = (self.last, step, None);
+    /// Adds a step; `improve` as in [`Peak::value`].
+    pub fn note(&mut self, nodal: &Nodal, ends: Ends, more: M, improve: impl Fn(&M, f64) -> f64) {
+        let largest = nodal.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let step = Step { largest, nodal: *nodal, ends, more };
+        let rises = |from: &Option<Step<M>>| from.is_none_or(|from| largest > from.largest);
+        if self.after.is_some() && rises(&self.last) {
+            self.of_earlier_humps = self.value(improve);
+            (self.before, self.highest, self.after) = (self.last, Some(step), None);
+        } else if rises(&self.highest) {
+            (self.before, self.highest, self.after) = (self.last, Some(step), None);
         } else if self.after.is_none() {
             self.after = Some(step);
         }
-        self.last = step;
+        self.last = Some(step);
+        self.at_nodes = self.at_nodes.max(largest);
     }
 
     /// The largest nodal value.
     pub fn at_nodes(&self) -> f64 {
-        self.highest.largest
+        self.at_nodes
     }
 
-    pub fn value(&self) -> f64 {
-        let beside = |step: &Step, at_end| {
-            let may_be_higher = step.largest >= CLOSE * self.highest.largest && step.turns(at_end);
-            if may_be_higher { step.maximum() } else { 0.0 }
+    /// The largest value, where `improve` gives the maximum of the quantity on a step near the place of that of the polynomial.
+    pub fn value(&self, improve: impl Fn(&M, f64) -> f64) -> f64 {
+        let Some(highest) = self.highest.filter(|step| step.largest >= CLOSE * self.of_earlier_humps) else {
+            return self.of_earlier_humps;
         };
-        let after = self.after.map_or(0.0, |step| beside(&step, false));
-        self.highest.maximum().max(beside(&self.before, true)).max(after)
+        let beside = |step: &Option<Step<M>>, at_end| {
+            let may_be_higher = |step: &Step<M>| step.largest >= CLOSE * highest.largest && step.turns(at_end);
+            step.filter(may_be_higher).map_or(0.0, |step| step.maximum(&improve))
+        };
+        let hump = highest.maximum(&improve).max(beside(&self.before, true)).max(beside(&self.after, false));
+        hump.max(self.of_earlier_humps)
     }
 }
 
@@ -71,18 +98,37 @@ mod tests {
     use super::*;
     use crate::panel::legendre::BASIS;
 
+    /// The peak of a quantity over steps from a place and of a length.
+    fn peak(quantity: impl Fn(f64) -> f64, steps: &[(f64, f64)]) -> f64 {
+        let at = |(from, h): &(f64, f64), place: f64| quantity(from + place * h);
+        let mut peak = Peak::NONE;
+        for step in steps {
+            peak.note(&BASIS.nodes.map(|s| at(step, s)), Ends::SMOOTH, *step, at);
+        }
+        peak.value(at)
+    }
+
     /// A parabola whose maximum lies just behind the end of a short step, before all nodes of a long one.
     #[test]
     fn a_maximum_beside_the_join_of_a_short_and_a_long_step_is_found() {
-        let parabola = |t: f64| 1.0 - (t - 0.004).powi(2);
         for steps in [[(-0.01, 0.01), (0.0, 1.0)], [(0.008, -0.01), (0.008, -1.0)]] {
             for order in [[0, 1], [1, 0]] {
-                let mut peak = Peak::NONE;
-                for (from, h) in order.map(|i| steps[i]) {
-                    peak.note(&BASIS.nodes.map(|s| parabola(from + s * h)), Ends::SMOOTH);
-                }
-                assert!((peak.value() - 1.0).abs() < 1e-14, "{}", peak.value());
+                let value = peak(|t| 1.0 - (t - 0.004).powi(2), &order.map(|i| steps[i]));
+                assert!((value - 1.0).abs() < 1e-14, "{value}");
             }
+        }
+    }
+
+    /// The higher of two humps lies between the nodes of a long step, all of which are lower than a node at the top of the other.
+    #[test]
+    fn the_higher_of_two_humps_is_found_between_its_nodes() {
+        let hump = |t: f64, top: f64, height: f64| height - (t - top).powi(2);
+        let node = BASIS.nodes[4];
+        let between = 0.5 * (BASIS.nodes[3] + BASIS.nodes[4]);
+        let quantity = |t: f64| if t < 1.0 { hump(t, node, 1.0) } else { hump(t, 2.0 + between, 1.0 + 1e-3) };
+        for steps in [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]] {
+            let value = peak(quantity, &steps.map(|from| (from, 1.0)));
+            assert!((value - 1.001).abs() < 1e-14, "{value}");
         }
     }
 }

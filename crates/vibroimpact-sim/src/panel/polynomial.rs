@@ -30,6 +30,12 @@ pub(crate) fn legendre(s: f64) -> Nodal {
     p
 }
 
+/// `P_Q`, from these.
+pub(crate) fn next_legendre(s: f64, p: &Nodal) -> f64 {
+    let (with, without) = FACTORS[Q - 1];
+    with * (2.0 * s - 1.0) * p[Q - 1] - without * p[Q - 2]
+}
+
 /// Inner product of two short vectors.
 pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
     let mut sum = 0.0;
