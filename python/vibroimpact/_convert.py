@@ -18,7 +18,19 @@ if TYPE_CHECKING:
 
 # Lists of objects that become structured arrays: the fields, by the name of the list.
 _TABLES: dict[str, list[list[str]]] = {
-    "sub_impacts": [["start_s", "end_s", "impulse_n_s", "peak_force_n", "peak_compression_m"]],
+    "sub_impacts": [
+        [
+            "start_s",
+            "end_s",
+            "impulse_n_s",
+            "peak_force_n",
+            "peak_force_uncertainty_n",
+            "peak_force_uncertainty_solver_n",
+            "peak_force_uncertainty_modes_left_out_n",
+            "peak_force_uncertainty_beam_theory_n",
+            "peak_compression_m",
+        ]
+    ],
     "contacts": [
         ["start", "end", "duration", "closing_speed", "peak_force"],
         ["start_s", "end_s", "peak_force_n"],
@@ -129,6 +141,7 @@ def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
     for name, kinds in tables.items():
         rows = entry.get(name)
         if isinstance(rows, list):
+            rows = [_flat(row) for row in rows]
             # A scene has lists of these names, too.
             fields = next((fields for fields in kinds if not rows or fields == list(rows[0])), None)
             if fields is not None:
@@ -136,6 +149,17 @@ def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
     if entry.get("floquet_multipliers") is not None:
         entry["floquet_multipliers"] = np.array([complex(*pair) for pair in entry["floquet_multipliers"]])
     return entry
+
+
+def _flat(row: Any) -> Any:
+    """A row whose uncertainties in parts are columns, as ``sub_impacts.csv`` has them."""
+    flat: dict[str, Any] = {}
+    for name, cell in row.items() if isinstance(row, dict) else ():
+        if name.endswith("_uncertainty_parts_n") and isinstance(cell, dict):
+            flat |= {f"{name.removesuffix('_parts_n')}_{part}_n": size for part, size in cell.items()}
+        else:
+            flat[name] = cell
+    return flat or row
 
 
 def _table(rows: list[dict[str, Any]], fields: list[str]) -> Any:

@@ -45,8 +45,9 @@ class Impact(Result):
 
     @property
     def sub_impacts(self) -> NDArray[Any] | None:
-        """The contacts as a structured array, with the columns ``start_s``, ``end_s``, ``impulse_n_s``, ``peak_force_n`` and
-        ``peak_compression_m``; ``None`` if the model does not resolve contacts."""
+        """The contacts as a structured array, with the columns ``start_s``, ``end_s``, ``impulse_n_s``, ``peak_force_n`` with its
+        uncertainty ``peak_force_uncertainty_n`` and the parts of that (NaN where it is not known), and ``peak_compression_m``;
+        ``None`` if the model does not resolve contacts."""
         return self["sub_impacts"]  # type: ignore[no-any-return]
 
     @property

@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite;
-use vibroimpact_sim::modal::{Outcome, Settings, Solver, Striker};
+use vibroimpact_sim::modal::{Outcome, Settings, Solver, Striker, SubImpact};
 
 /// The same row of random values on every machine; `VIBROIMPACT_SEED` (0 to 255) draws another one.
 fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
@@ -78,12 +78,13 @@ impl Coverage {
     }
 }
 
-/// True errors from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
+/// True errors of the restitution and of the largest forces from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
 /// become that exact, it ends with its limit, and one at 1e-12 or 1e-11 takes its place.
 fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
     let tolerances = [1e-9, 1e-7, 1e-5, 1e-3];
     let mut coverages = tolerances.map(|_| Coverage::default());
-    let mut known = 0;
+    let mut forces = tolerances.map(|_| Coverage::default());
+    let (mut known, mut contacts, mut unknown_forces) = (0, 0, 0);
     for impact in impacts {
         let solver = Solver::new(&impact.structure).unwrap();
         let solve = |tolerance: f64| {
@@ -92,12 +93,13 @@ fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
         };
         let tight = |tolerance: f64| {
             let solution = solve(tolerance);
-            solution.restitution.zip(solution.restitution_uncertainty).filter(|(_, rest)| *rest < 1e-3)
+            let known = solution.restitution.zip(solution.restitution_uncertainty).filter(|(_, rest)| *rest < 1e-3);
+            known.map(|known| (known, solution.sub_impacts))
         };
         // some are so chaotic that no double-precision solution is known to 1e-3
-        let Some((reference, rest)) = [1e-13, 1e-12, 1e-11].into_iter().find_map(tight) else { continue };
+        let Some(((reference, rest), exact)) = [1e-13, 1e-12, 1e-11].into_iter().find_map(tight) else { continue };
         known += 1;
-        for (tolerance, coverage) in tolerances.into_iter().zip(&mut coverages) {
+        for ((tolerance, coverage), forces) in tolerances.into_iter().zip(&mut coverages).zip(&mut forces) {
             let solution = solve(tolerance);
             // at loose tolerances an impact that amplifies errors, or a coarser solution of it, may be given up
             let Some((restitution, stated)) = solution.restitution.zip(solution.restitution_uncertainty) else {
@@ -108,9 +110,32 @@ fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
             coverage.note(beyond, stated, || format!("{tolerance:e} {impact:?}"));
             coverage.widths.push(stated / beyond.max(1e-3 * tolerance));
             coverage.steps += solution.counts.steps();
+            let found = &solution.sub_impacts;
+            contacts += found.len();
+            for (i, contact) in found.iter().enumerate() {
+                let Some(stated) = contact.peak_force_uncertainty_n else {
+                    unknown_forces += 1;
+                    continue;
+                };
+                let exact = SubImpact::counterpart(i, found, &exact);
+                let exact = exact.and_then(|exact| Some((exact.peak_force_n, exact.peak_force_uncertainty_n?)));
+                if let Some((exact, rest)) = exact {
+                    let beyond = ((contact.peak_force_n - exact).abs() - rest).max(0.0);
+                    forces.note(beyond, stated, || format!("contact {i} at {tolerance:e} {impact:?}"));
+                }
+            }
         }
     }
     assert!(100 * known >= 95 * impacts.len(), "{name}: {known} of {}", impacts.len());
+    println!("{name}: the largest force is not known for {unknown_forces} of {contacts} contacts");
+    assert!(5 * unknown_forces < contacts, "{name}: {unknown_forces} of {contacts}");
+    for (tolerance, coverage) in tolerances.into_iter().zip(&mut forces) {
+        let name = format!("largest forces, {name} at {tolerance:e}");
+        coverage.print(&name);
+    }
+    for (tolerance, coverage) in tolerances.into_iter().zip(&forces) {
+        coverage.assert(&format!("largest forces, {name} at {tolerance:e}"), known);
+    }
     let names = tolerances.map(|tolerance| format!("{name} at {tolerance:e}"));
     names.iter().zip(&mut coverages).for_each(|(name, coverage)| coverage.print(name));
     for (name, coverage) in names.iter().zip(&mut coverages) {

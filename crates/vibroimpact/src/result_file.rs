@@ -12,7 +12,7 @@ use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
 use crate::simulate::Simulation;
 use crate::stop_word::word;
-use crate::summary::{Contact, Cost, Energy, RodMotion, Summary};
+use crate::summary::{Contact, Cost, Energy, PEAK_FORCE, RodMotion, Summary};
 use crate::trust::Check;
 
 /// The object of `simulate --json` and `result.json`. The keys are always the same; quantities that a model does not resolve are
@@ -88,6 +88,11 @@ pub struct SubImpact {
     pub impulse_n_s: Option<f64>,
     /// Largest force (N).
     pub peak_force_n: f64,
+    /// Estimated error of the largest force: the sum of the known parts (N); null where one is not known that is known of the
+    /// restitution.
+    pub peak_force_uncertainty_n: Option<f64>,
+    /// Its parts (N); null where a part cannot be known, which `choice.not_known` explains.
+    pub peak_force_uncertainty_parts_n: Uncertainty,
     /// Largest compression (m).
     pub peak_compression_m: f64,
 }
@@ -138,12 +143,14 @@ impl ResultFile {
             counts,
             choice,
         } = summary.clone();
-        let contact = |Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }| SubImpact {
-            start_s,
-            end_s: Some(end_s),
-            impulse_n_s: Some(impulse_n_s),
-            peak_force_n,
-            peak_compression_m,
+        let contact = |contact: Contact| SubImpact {
+            start_s: contact.start_s,
+            end_s: Some(contact.end_s),
+            impulse_n_s: Some(contact.impulse_n_s),
+            peak_force_n: contact.peak_force_n,
+            peak_force_uncertainty_n: contact.peak_force_uncertainty_n,
+            peak_force_uncertainty_parts_n: contact.peak_force_uncertainty_parts_n,
+            peak_compression_m: contact.peak_compression_m,
         };
         ResultFile {
             vibroimpact: env!("CARGO_PKG_VERSION"),
@@ -206,7 +213,8 @@ impl ResultFile {
     /// # Errors
     /// As [`Scene::posed_on_infinite`].
     pub fn of_infinite(scene: &Scene, scale: &Scale, solution: &Solution) -> Result<ResultFile, InvalidInput> {
-        let answer = scene.infinite_answer(solution);
+        let mut answer = scene.infinite_answer(solution);
+        answer.not_known.push(format!("{PEAK_FORCE}: not estimated for infinite structures"));
         let found = infinite::Summary::new(solution, Some(scale));
         let momentum = scene.posed_on_infinite()?.striker.mass_kg * scale.speed_m_s;
         let mut compression = vec![0.0_f64; solution.sub_impacts.len()];
@@ -223,6 +231,8 @@ impl ResultFile {
                 .striker_velocity_at_end
                 .map(|end| momentum * (end - contact.striker_velocity_at_start)),
             peak_force_n: scale.force_n * told.peak_force,
+            peak_force_uncertainty_n: None,
+            peak_force_uncertainty_parts_n: Uncertainty::default(),
             peak_compression_m: scale.displacement_m * compression,
         });
         Ok(ResultFile {

@@ -84,7 +84,7 @@ impl Scene {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,
         };
-        let summary = Summary::new(&solution, history.energy_ledger(), &impact).chosen(choice.answer);
+        let summary = Summary::new(&solution, history.energy_ledger(), &impact).chosen(choice);
         let summary = Summary { rod, falling, ..summary };
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }

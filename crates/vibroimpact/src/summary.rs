@@ -2,7 +2,7 @@
 
 pub use crate::falling::Falling;
 use crate::impact::Impact;
-use crate::model::{Answer, Uncertainty};
+use crate::model::{Answer, Choice, Model, Uncertainty};
 use crate::stop_word::word;
 use serde::Serialize;
 use vibroimpact_sim::StopReason;
@@ -86,8 +86,28 @@ pub struct Contact {
     pub impulse_n_s: f64,
     /// Largest force (N).
     pub peak_force_n: f64,
+    /// Estimated error of the largest force: the sum of the known parts (N); null where one is not known that is known of the
+    /// restitution.
+    pub peak_force_uncertainty_n: Option<f64>,
+    /// Its parts (N); null where a part cannot be known, which `choice.not_known` explains.
+    pub peak_force_uncertainty_parts_n: Uncertainty,
     /// Largest compression (m).
     pub peak_compression_m: f64,
+}
+
+impl Contact {
+    fn new(contact: &SubImpact, peak_force: Uncertainty) -> Contact {
+        let &SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m, .. } = contact;
+        Contact {
+            start_s,
+            end_s,
+            impulse_n_s,
+            peak_force_n,
+            peak_force_uncertainty_n: peak_force.whole(),
+            peak_force_uncertainty_parts_n: peak_force,
+            peak_compression_m,
+        }
+    }
 }
 
 /// The energy balance (J). The residual is the initial energy minus all other parts, and consists of their rounding.
@@ -143,9 +163,8 @@ pub struct Cost {
 impl Summary {
     /// Collects a result for printing.
     pub fn new(solution: &Solution, energy: EnergyLedger, impact: &Impact) -> Summary {
-        let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
-            Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
-        };
+        let solved = |solver: Option<f64>| Uncertainty { solver, ..Uncertainty::default() };
+        let contact = |contact: &SubImpact| Contact::new(contact, solved(contact.peak_force_uncertainty_n));
         let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps, .. } =
             solution.counts;
         Summary {
@@ -153,7 +172,7 @@ impl Summary {
             stopped_by: solution.outcome.stopped_by(),
             restitution: solution.restitution,
             restitution_uncertainty: solution.restitution_uncertainty,
-            uncertainty: Uncertainty { solver: solution.restitution_uncertainty, ..Uncertainty::default() },
+            uncertainty: solved(solution.restitution_uncertainty),
             sub_impact_count: solution.sub_impacts.len(),
             sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
@@ -179,16 +198,55 @@ impl Summary {
         }
     }
 
-    /// The same with the choice of the model, whose restitution and uncertainty are used.
-    pub fn chosen(self, choice: Answer) -> Summary {
+    /// The same with the choice of the model, whose restitution and uncertainties are used.
+    pub fn chosen(self, choice: Choice) -> Summary {
+        let Choice { mut answer, sub_impacts, peak_forces, .. } = choice;
+        let mut contacts = self.sub_impacts;
+        if peak_forces.len() == contacts.len() {
+            let judged = sub_impacts.iter().zip(peak_forces);
+            contacts = judged.map(|(contact, peak)| Contact::new(contact, peak)).collect();
+        }
+        for contact in &mut contacts {
+            contact.peak_force_uncertainty_n = contact.peak_force_uncertainty_parts_n.whole_beside(&answer.uncertainty);
+        }
+        answer.not_known.extend(peaks_not_known(&answer, &contacts));
         Summary {
-            restitution: choice.restitution,
-            restitution_uncertainty: choice.restitution_uncertainty,
-            uncertainty: choice.uncertainty,
-            choice: Some(choice),
+            restitution: answer.restitution,
+            restitution_uncertainty: answer.restitution_uncertainty,
+            uncertainty: answer.uncertainty,
+            sub_impacts: contacts,
+            choice: Some(answer),
             ..self
         }
     }
+}
+
+/// How a sentence begins that states why uncertainties of largest forces are not known.
+pub(crate) const PEAK_FORCE: &str = "peak force";
+
+/// Why parts of the uncertainty of largest forces are not known that are known of the restitution.
+fn peaks_not_known(answer: &Answer, contacts: &[Contact]) -> Vec<String> {
+    if answer.restitution.is_none() && !contacts.is_empty() {
+        return vec![format!("{PEAK_FORCE}: not estimated where there is no restitution")];
+    }
+    let parts = answer.uncertainty.parts().into_iter().enumerate().filter(|(_, (_, part))| part.is_some());
+    let of_part = |(place, (name, _)): (usize, (&str, Option<f64>))| {
+        let is_unknown = |contact: &&Contact| contact.peak_force_uncertainty_parts_n.parts()[place].1.is_none();
+        let unknown = contacts.iter().filter(is_unknown).count();
+        let why = match (unknown, answer.model) {
+            (0, _) => return None,
+            (_, Model::Modal) => {
+                let all = contacts.len();
+                format!(
+                    "not known for {unknown} of {all} sub-impacts: another impact that was solved for the estimate has none at \
+                     their time, or not one alone, or all digits of the force are uncertain"
+                )
+            }
+            (_, model) => format!("the model {} bounds the error of the restitution alone", model.as_str()),
+        };
+        Some(format!("{PEAK_FORCE}, {name}: {why}"))
+    };
+    parts.filter_map(of_part).collect()
 }
 
 /// The object that `modes --json` prints: modes from the lowest.

@@ -8,8 +8,10 @@ use std::path::Path;
 
 use crate::gallery::named;
 use serde_json::{Value, json};
-use vibroimpact::Scene;
-use vibroimpact::model::{Answer, Kept, Model, Modes, Uncertainty};
+use vibroimpact::model::{Answer, Choice, Kept, Model, Modes, Uncertainty};
+use vibroimpact::simulate::Simulation;
+use vibroimpact::vibroimpact_sim::modal::SubImpact;
+use vibroimpact::{Scene, text};
 
 fn answer(scene: &Scene) -> Answer {
     scene.answer().unwrap()
@@ -693,4 +695,79 @@ fn a_comparison_that_stops_is_no_uncertainty_of_1() {
     let (Uncertainty { solver, .. }, whole, why) = beside(3e5, 1e-4);
     let told = "solver: the same impact with a coarser tolerance stopped before it ended";
     assert!(solver.is_none() && whole.is_none() && why.iter().any(|why| why == told), "{solver:?} {whole:?} {why:?}");
+}
+
+/// Largest forces with few and with many modes, stated and chosen, against 400 modes and remainder modes.
+#[test]
+fn largest_forces_are_within_their_uncertainty() {
+    let (mut known, mut first_unknown) = (0, 0);
+    for name in ["pinned-beam", "viscous", "cantilever-tip"] {
+        let with = |modes, residual_compliance, tolerance| {
+            let tolerance = Some(tolerance);
+            let scene = Scene { modes, residual_compliance, tolerance, model: Model::Modal, ..named(name) };
+            scene.choose().unwrap()
+        };
+        let exact = with(Modes::Count(400), Some(true), 1e-9).sub_impacts;
+        for found in [
+            with(Modes::Count(20), Some(false), 1e-9),
+            with(Modes::Count(60), Some(false), 1e-6),
+            with(Modes::Count(100), Some(true), 1e-6),
+            with(Modes::Auto, None, 1e-2),
+            with(Modes::Auto, None, 1e-4),
+        ] {
+            let Choice { answer, sub_impacts, peak_forces, .. } = found;
+            assert_eq!(peak_forces.len(), sub_impacts.len());
+            let of_model = Uncertainty { beam_theory: None, ..answer.uncertainty };
+            for (i, (contact, uncertainty)) in sub_impacts.iter().zip(&peak_forces).enumerate() {
+                let whole = Uncertainty { beam_theory: None, ..*uncertainty }.whole_beside(&of_model);
+                let Some((whole, exact)) = whole.zip(SubImpact::counterpart(i, &sub_impacts, &exact)) else {
+                    first_unknown += usize::from(i == 0);
+                    continue;
+                };
+                let error = (contact.peak_force_n - exact.peak_force_n).abs();
+                assert!(error <= whole, "{name}, {} modes, {i}: {error} {contact:?} {uncertainty:?}", answer.modes);
+                known += 1;
+            }
+        }
+    }
+    assert!(known >= 20 && first_unknown == 0, "{known} known, {first_unknown} first ones unknown");
+}
+
+/// With 40 modes later contacts come at other times, so that nothing is known of their forces: JSON and the table say so.
+#[test]
+fn a_force_without_counterpart_is_not_known() {
+    let scene = named("pinned-beam");
+    let found = scene.simulate().unwrap();
+    let result: Value = serde_json::from_str(&found.json(&scene).unwrap()).unwrap();
+    let contacts = result["sub_impacts"].as_array().unwrap();
+    let unknown = contacts.iter().filter(|contact| contact["peak_force_uncertainty_n"].is_null()).count();
+    assert!(unknown > 0 && contacts[0]["peak_force_uncertainty_n"].is_number(), "{contacts:?}");
+    for contact in contacts {
+        let parts = &contact["peak_force_uncertainty_parts_n"];
+        let [solver, left_out] = ["solver", "modes_left_out"].map(|part| parts[part].as_f64());
+        assert_eq!(contact["peak_force_uncertainty_n"].as_f64(), solver.zip(left_out).map(|(a, b)| a + b));
+        assert!(solver.is_some() && parts["beam_theory"].is_null());
+    }
+    let why = format!("peak force, modes left out: not known for {unknown} of {} sub-impacts", contacts.len());
+    let not_known = result["choice"]["not_known"].as_array().unwrap();
+    assert!(not_known.iter().any(|told| told.as_str().unwrap().starts_with(&why)), "{not_known:?}");
+    let Simulation::Modal(resolved) = found else { panic!() };
+    let printed = text::result(&resolved.summary);
+    assert_eq!(printed.matches(" ?  ").count(), unknown, "{printed}");
+    assert!(printed.contains("peak force, modes left out"), "{printed}");
+}
+
+/// The bound on the motion of an immovable location is one on the restitution.
+#[test]
+fn an_immovable_location_bounds_the_restitution_alone() {
+    let mut scene: Value = serde_json::from_str(&near_the_root().to_json()).unwrap();
+    scene["location_m"] = json!(0);
+    let scene = Scene::from_value(&scene).unwrap();
+    let found = scene.simulate().unwrap();
+    let result: Value = serde_json::from_str(&found.json(&scene).unwrap()).unwrap();
+    assert_eq!(result["choice"]["model"], "rigid");
+    let contact = &result["sub_impacts"][0];
+    assert!(contact["peak_force_uncertainty_n"].is_null(), "{contact}");
+    let not_known = result["choice"]["not_known"].to_string();
+    assert!(not_known.contains("bounds the error of the restitution alone"), "{not_known}");
 }

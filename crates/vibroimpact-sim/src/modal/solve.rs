@@ -33,6 +33,9 @@ pub(crate) const BESIDE: usize = 1;
 const FURTHER: f64 = 8.0;
 /// Factor from the largest difference to the uncertainty; the difference from the further solution counts twice.
 const WIDENED: f64 = 3.0;
+const TWICE: f64 = 2.0;
+/// Share of the largest force of an impact above which differences of forces say nothing of their errors.
+const ACCIDENTS: f64 = 0.05;
 /// Share of the tolerance that each contact adds, as its error may vanish in all differences by accident.
 const LEAST: f64 = 2.5e-3;
 
@@ -278,7 +281,8 @@ impl Solver {
         let known = if estimate_uncertainty { self.restitutions(&run, &impact) } else { None };
         let restitution_uncertainty = known.and_then(|known| {
             let coarser = beside.get_or_insert_with(|| self.coarser(&impact, &lowered, keep));
-            self.uncertainty(&known, coarser, &impact, || solve(FURTHER, Keep::Result), &mut counts)
+            let further = || solve(FURTHER, Keep::Result);
+            self.uncertainty(&known, coarser, &impact, further, &mut run.sub_impacts, &mut counts)
         });
         let solution = Solution {
             outcome: run.outcome,
@@ -318,13 +322,15 @@ impl Solver {
     }
 
     /// Estimated error of the restitution, from coarser solutions of the same impact and, where it is needed, a further one: `None` if
-    /// one of them stopped at a limit, and 1 if one ended without a restitution.
+    /// one of them stopped at a limit, and 1 if one ended without a restitution. If all have one, those of the largest forces follow
+    /// from the same solutions.
     fn uncertainty(
         &self,
         known: &Restitutions,
         coarser: &[(Run, Option<Restitutions>)],
         impact: &Impact,
         further: impl FnOnce() -> Run,
+        sub_impacts: &mut [SubImpact],
         counts: &mut Counts,
     ) -> Option<f64> {
         let without = |run: &Run| if run.outcome.stopped_by().is_some() { None } else { Some(1.0) };
@@ -336,12 +342,16 @@ impl Solver {
             spread = spread.max(known.difference(coarser));
             same_contacts &= known.flights.len() == coarser.flights.len();
         }
+        let mut others: Vec<(&[SubImpact], f64)> = coarser.iter().map(|(run, _)| (&run.sub_impacts[..], 1.0)).collect();
+        let run;
         if spread > tolerance || !same_contacts {
-            let run = further();
+            run = further();
             *counts += run.counts;
             let Some(further) = self.restitutions(&run, impact) else { return without(&run) };
-            spread = spread.max(2.0 * known.difference(&further));
+            spread = spread.max(TWICE * known.difference(&further));
+            others.push((&run.sub_impacts, TWICE));
         }
+        judge_peaks(sub_impacts, &others, tolerance);
         let contacts = known.flights.len() as f64;
         Some((WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX))
     }
@@ -418,6 +428,7 @@ impl Solver {
             end_s: interval.end_s.unwrap_or(run.end_s),
             impulse_n_s: interval.impulse_n_s,
             peak_force_n: interval.peak_force_n,
+            peak_force_uncertainty_n: None,
             peak_compression_m: interval.peak_compression_m,
         };
         let (amplitude, rate) =
@@ -478,6 +489,28 @@ impl Restitutions {
             Some(flight) => (flight.contact_s[1] <= time_s).then_some(flight.restitution),
             None => Some(-1.0),
         }
+    }
+}
+
+/// Estimates the errors of the largest forces from other solutions of the same impact, whose differences count by this factor. As the
+/// error of a motion persists, and two motions may agree in one number by accident, a difference counts for all later contacts as well.
+/// Once it is a large part of all forces, the motions have nothing but accidents in common.
+fn judge_peaks(sub_impacts: &mut [SubImpact], others: &[(&[SubImpact], f64)], tolerance: f64) {
+    let largest_n = sub_impacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
+    let mut spread_n = 0.0f64;
+    for i in 0..sub_impacts.len() {
+        let difference_n = |(other, factor): &(&[SubImpact], f64)| {
+            let other = SubImpact::counterpart(i, sub_impacts, other)?;
+            Some(factor * (sub_impacts[i].peak_force_n - other.peak_force_n).abs())
+        };
+        let differences_n: Option<Vec<f64>> = others.iter().map(difference_n).collect();
+        let Some(differences_n) = differences_n else { continue };
+        spread_n = differences_n.into_iter().fold(spread_n, f64::max);
+        if spread_n > ACCIDENTS * largest_n {
+            return;
+        }
+        let uncertainty_n = WIDENED * spread_n + LEAST * (i + 1) as f64 * tolerance * largest_n;
+        sub_impacts[i].peak_force_uncertainty_n = Some(uncertainty_n.min(f64::MAX));
     }
 }
 

@@ -100,7 +100,18 @@ impl Files {
 
 fn sub_impacts_csv(summary: &Summary) -> Result<Vec<u8>, Failure> {
     let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    table.write_record(["number", "start_s", "end_s", "impulse_n_s", "peak_force_n", "peak_compression_m"])?;
+    table.write_record([
+        "number",
+        "start_s",
+        "end_s",
+        "impulse_n_s",
+        "peak_force_n",
+        "peak_force_uncertainty_n",
+        "peak_force_uncertainty_solver_n",
+        "peak_force_uncertainty_modes_left_out_n",
+        "peak_force_uncertainty_beam_theory_n",
+        "peak_compression_m",
+    ])?;
     for (i, contact) in summary.sub_impacts.iter().enumerate() {
         table.serialize((i + 1, contact))?;
     }

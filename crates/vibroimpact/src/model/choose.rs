@@ -68,8 +68,8 @@ impl Scene {
         let (choice, more) = answered?;
         let mut cost = choice.answer.cost;
         found.add(others?, &mut cost);
-        let answer = self.judge_theory(choice.answer, &mut found, &mut cost)?;
-        Ok((Choice { answer: Answer { cost, ..answer }, ..choice }, more))
+        let choice = self.judge_theory(choice, &mut found, &mut cost)?;
+        Ok((Choice { answer: Answer { cost, ..choice.answer }, ..choice }, more))
     }
 
     /// As [`Scene::answer`], with cached data of earlier scenes: the same answer to the last bit in less time. The uncertainty of

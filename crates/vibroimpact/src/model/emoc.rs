@@ -138,5 +138,5 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
         modes: count,
         ..Answer::new(Model::Emoc, pose.tolerance, known, reason)
     };
-    Ok(Ok(Choice { answer, impact: None }))
+    Ok(Ok(Choice::from(answer)))
 }

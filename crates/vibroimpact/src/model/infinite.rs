@@ -297,14 +297,14 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
         sub_impact_count: Some(solution.sub_impacts.len()),
         ..Answer::new(Model::InfiniteBeam, pose.tolerance, known, reason)
     };
-    Ok(Ok((Choice { answer, impact: None }, uncertainty)))
+    Ok(Ok((Choice::from(answer), uncertainty)))
 }
 
 /// An infinite structure.
 pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInput> {
     scene.require_infinite_model()?;
     let (_, solution) = scene.solve_infinite()?;
-    Ok(Choice { answer: scene.infinite_answer(&solution), impact: None })
+    Ok(scene.infinite_answer(&solution).into())
 }
 
 impl Scene {

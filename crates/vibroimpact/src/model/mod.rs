@@ -24,6 +24,7 @@ mod left_out;
 mod other_modes;
 mod plan;
 mod pose;
+mod quantity;
 mod rigid;
 mod settle;
 mod stated;
@@ -50,6 +51,7 @@ pub use kept::Kept;
 pub use plan::{Estimate, Plan};
 #[cfg(feature = "files")]
 pub(crate) use text::parts_in_words;
+pub(crate) use text::wrapped;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
 pub use uncertainty::Uncertainty;
 

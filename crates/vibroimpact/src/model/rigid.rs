@@ -116,7 +116,7 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
         sub_impact_count: Some(1),
         ..Answer::new(Model::Rigid, pose.tolerance, known, reason)
     };
-    Ok(Choice { answer, impact: None })
+    Ok(Choice::from(answer))
 }
 
 fn in_scene_of_law(fault: InvalidInput) -> InvalidInput {

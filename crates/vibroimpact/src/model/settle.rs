@@ -29,12 +29,13 @@ use vibroimpact_sim::{StopReason, both};
 use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
-    Change, at_the_end, by_changes, energy_of_remainder, jumps, restitution_per_impulse, still_growing, too_short,
-    with_one_remainder_mode, with_softer_remainder,
+    at_the_end, by_changes, energy_of_remainder, jumps, still_growing, too_short, with_one_remainder_mode,
+    with_softer_remainder,
 };
 use super::other_modes::solve;
 use super::pose::{Pose, Source};
-use super::uncertainty::Known;
+use super::quantity::{Change, Quantity};
+use super::uncertainty::{Known, Uncertainty, of_peaks};
 use super::{Answer, Cost, Model};
 use crate::impact::Impact;
 use crate::scene;
@@ -91,15 +92,15 @@ struct Rung {
     unseen: Option<Unseen>,
 }
 
-/// Errors that changes between numbers of modes do not show.
-#[derive(Clone, Copy, Default)]
+/// Impacts with the same number of modes that show errors which changes between numbers of modes do not show.
+#[derive(Default)]
 struct Unseen {
-    /// Change by a looser tolerance, if the number of modes before had the same tolerance.
-    solver: f64,
-    /// Possible change by their assumed shape.
-    shape: f64,
-    /// Possible change by the uncertainty of the static compliance.
-    compliance: f64,
+    /// With a looser tolerance, if the number of modes before had the same tolerance.
+    solver: Option<Solution>,
+    /// With another shape of the remainder modes, if theirs is assumed.
+    shape: Option<Solution>,
+    /// With a static compliance larger by its uncertainty.
+    compliance: Option<Solution>,
 }
 
 /// An impact with a number of modes, to be solved.
@@ -153,16 +154,12 @@ impl Rung {
         Ok((posed.solved(solution, recording), before))
     }
 
-    /// Change with other remainder modes and, if it is wanted, with a looser tolerance.
+    /// Solves the impact with other remainder modes and, if it is wanted, with a looser tolerance.
     fn find_unseen(&mut self, pose: &mut Pose, with_solver: bool, cost: &mut Cost) -> Result<(), InvalidInput> {
         let listed = matches!(pose.source, Source::Listed { .. });
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
-        let per_impulse = restitution_per_impulse(&self.impact);
-        let mut changed = |other: Impact| {
-            let (other, _) = solve(&other, pose.kept, cost)?;
-            Ok::<_, InvalidInput>(Change::between(&other, &self.solution, per_impulse).size())
-        };
+        let mut changed = |other: Impact| Ok::<_, InvalidInput>(Some(solve(&other, pose.kept, cost)?.0));
         let on = |structure: Structure| Impact { structure, ..self.impact.clone() };
         let mut unseen = Unseen::default();
         let Impact { structure, remainder_modes, settings, .. } = &self.impact;
@@ -195,8 +192,7 @@ impl Rung {
 struct Rungs {
     earlier: Vec<Rung>,
     last: Rung,
-    /// Restitution per impulse (1/(N s)).
-    per_impulse: f64,
+    restitution: Quantity<'static>,
     /// Whether the contact force jumps at first touch.
     jumps: bool,
     /// The number of modes, if there is one, that makes up the whole static compliance.
@@ -239,38 +235,47 @@ impl Rungs {
     }
 
     /// Changes between neighbours with different numbers of modes, the latest first.
-    fn changes(&self) -> impl Iterator<Item = (Change, [usize; 2])> {
+    fn changes(&self, of: &Quantity) -> impl Iterator<Item = (Change, [usize; 2])> {
         let pairs = self.near().zip(self.near().skip(1)).filter(|(next, last)| next.count != last.count);
-        pairs.map(|(next, last)| {
-            (Change::between(&last.solution, &next.solution, self.per_impulse), [last.count, next.count])
-        })
+        pairs.map(|(next, last)| (of.change(&last.solution, &next.solution), [last.count, next.count]))
     }
 
     /// Their sizes.
-    fn sizes(&self) -> Vec<f64> {
-        self.changes().map(|(change, _)| change.size()).collect()
+    fn sizes(&self, of: &Quantity) -> Vec<f64> {
+        self.changes(of).map(|(change, _)| change.size()).collect()
+    }
+
+    /// Change of the last by one of the impacts with the same number of modes; 0 if that is not needed.
+    fn unseen(&self, of: &Quantity, which: fn(&Unseen) -> &Option<Solution>) -> f64 {
+        let other = self.last.unseen.as_ref().and_then(|unseen| which(unseen).as_ref());
+        other.map_or(0.0, |other| of.change(other, &self.last.solution).size())
     }
 
     /// Whether changes decrease as the number of modes rises, if there are enough of them.
     fn falls(&self) -> bool {
-        let sizes = self.sizes();
+        let sizes = self.sizes(&self.restitution);
         sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
     }
 
     /// Estimated change by the truncated modes, if it is known.
-    fn left_out(&self) -> f64 {
-        let Unseen { shape, compliance, .. } = self.last.unseen.unwrap_or_default();
-        let changes: Vec<(f64, usize)> = self.changes().map(|(change, [_, to])| (change.size(), to)).collect();
+    fn left_out(&self, of: &Quantity) -> f64 {
+        let changes: Vec<(f64, usize)> = self.changes(of).map(|(change, [_, to])| (change.size(), to)).collect();
         if self.is_complete() {
             return 0.0;
         }
-        by_changes(&changes, self.jumps).max(self.last.energy).max(shape) + compliance
+        let changed = by_changes(&changes, self.jumps, of.scale()).max(of.scale() * self.last.energy);
+        self.with_unseen(of, changed)
     }
 
     /// The same where the numbers of modes end before the restitution has converged.
-    fn left_out_at_the_end(&self) -> f64 {
-        let Unseen { shape, compliance, .. } = self.last.unseen.unwrap_or_default();
-        at_the_end(&self.sizes(), self.last.energy, self.last.resolution).max(shape) + compliance
+    fn left_out_at_the_end(&self, of: &Quantity) -> f64 {
+        let changed = at_the_end(&self.sizes(of), of.scale(), self.last.energy, self.last.resolution);
+        self.with_unseen(of, changed)
+    }
+
+    /// An estimate with what remainder modes of another shape and the uncertainty of the compliance change.
+    fn with_unseen(&self, of: &Quantity, changed: f64) -> f64 {
+        changed.max(self.unseen(of, |unseen| &unseen.shape)) + self.unseen(of, |unseen| &unseen.compliance)
     }
 
     /// Whether the last two had the tightest tolerance, so that their change may not show the solver's error.
@@ -279,15 +284,20 @@ impl Rungs {
     }
 
     /// Possible error of the solver with the last number of modes.
-    fn solver(&self) -> f64 {
+    fn solver(&self, of: &Quantity) -> f64 {
         let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
         let change = match wider {
-            Some(wider) => Change::between(&wider.solution, &self.last.solution, self.per_impulse).size(),
-            None if self.near().count() > 2 => self.sizes().first().copied().unwrap_or(1.0),
+            Some(wider) => of.change(&wider.solution, &self.last.solution).size(),
+            None if self.near().count() > 2 => self.sizes(of).first().copied().unwrap_or(of.scale()),
             None => 0.0,
         };
-        let unseen = self.last.unseen.unwrap_or_default().solver;
-        SOLVER_FLOOR * self.last.impact.settings.tolerance + (SOLVER_CHANGE * change).max(unseen)
+        let floor = SOLVER_FLOOR * self.last.impact.settings.tolerance * of.scale();
+        floor + (SOLVER_CHANGE * change).max(self.unseen(of, |unseen| &unseen.solver))
+    }
+
+    /// Possible error of the restitution.
+    fn error(&self) -> f64 {
+        self.solver(&self.restitution) + self.left_out(&self.restitution)
     }
 
     fn counts(&self) -> String {
@@ -297,9 +307,9 @@ impl Rungs {
         counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// Difference of the largest and smallest of the last restitutions, and their number.
-    fn spread(&self) -> Option<(f64, usize)> {
-        let values: Vec<f64> = self.near().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
+    /// Difference of the largest and smallest of the last values of a quantity, and their number.
+    fn spread(&self, of: &Quantity) -> Option<(f64, usize)> {
+        let values: Vec<f64> = self.near().take(SPREAD).filter_map(|rung| of.value(&rung.solution)).collect();
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
         (values.len() > 1).then_some((high - low, values.len()))
     }
@@ -314,9 +324,9 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
     let (first, mut before) = Rung::with_the_one_before(pose, expected, settings(tolerance, tightened), cost)?;
-    let per_impulse = restitution_per_impulse(&first.impact);
+    let restitution = Quantity::restitution(&first.impact);
     let jumps = jumps(&pose.law);
-    let mut rungs = Rungs { last: first, earlier: Vec::new(), per_impulse, jumps, complete, too_many: None };
+    let mut rungs = Rungs { last: first, earlier: Vec::new(), restitution, jumps, complete, too_many: None };
     loop {
         let count = rungs.last.count;
         if rungs.last.takes_too_many_steps() && (count > 1 || !rungs.earlier.is_empty()) {
@@ -341,20 +351,16 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             };
             rungs.add_earlier(before);
         }
-        if (is_plate || jumps)
-            && rungs.near().count() == 2
-            && rungs.solver() + rungs.left_out() <= tolerance
-            && !several_contacts
-        {
+        if (is_plate || jumps) && rungs.near().count() == 2 && rungs.error() <= tolerance && !several_contacts {
             // the smallest of three
             let before = rungs.earlier.len() - 1;
             let third = Rung::new(pose, fewer(rungs.earlier[before].count), settings(tolerance, tightened), cost)?;
             rungs.earlier.insert(before, Rung { recording: None, ..third });
         }
-        if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.unseen.is_none() {
+        if rungs.error() <= tolerance && rungs.last.unseen.is_none() {
             rungs.last.find_unseen(pose, several_contacts && rungs.share_tightest_tolerance(), cost)?;
         }
-        let (solver, left_out) = (rungs.solver(), rungs.left_out());
+        let (solver, left_out) = (rungs.solver(&rungs.restitution), rungs.left_out(&rungs.restitution));
         let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
         // after several contacts, two impacts may agree although both miss the same contact: a third one is required
         let several = several_contacts && rungs.near().count() < 3;
@@ -397,21 +403,26 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
         Source::Listed { modes, .. } => still_growing(modes),
         Source::Beam { .. } | Source::Computed { .. } => 1.0,
     };
-    let spread = rungs.spread().filter(|_| !settled);
+    let spread = rungs.spread(&rungs.restitution).filter(|_| !settled);
     let reason = reason(pose, &rungs, settled, exhausted, spread);
     let spread = spread.map(|(spread, _)| spread);
-    let left_out = match spread {
+    let left_out = |of: &Quantity| match rungs.spread(of).filter(|_| !settled) {
         _ if rungs.is_complete() => 0.0,
-        Some(spread) if exhausted => growing * rungs.left_out_at_the_end().max(spread),
-        Some(spread) => rungs.left_out().max(rungs.left_out_at_the_end()).max(spread),
-        None => rungs.left_out(),
+        Some((spread, _)) if exhausted => growing * rungs.left_out_at_the_end(of).max(spread),
+        Some((spread, _)) => rungs.left_out(of).max(rungs.left_out_at_the_end(of)).max(spread),
+        None => rungs.left_out(of),
     };
-    let solver = rungs.solver();
-    let stated = if settled { left_out.max((LUCK * left_out).min(pose.tolerance - solver)) } else { left_out };
+    let (solver, converged) = (rungs.solver(&rungs.restitution), left_out(&rungs.restitution));
+    let stated = if settled { converged.max((LUCK * converged).min(pose.tolerance - solver)) } else { converged };
+    let peaks = of_peaks(&rungs.last.solution.sub_impacts, |_, of| Uncertainty {
+        solver: Some(rungs.solver(of)),
+        modes_left_out: Some(if settled { LUCK * left_out(of) } else { left_out(of) }),
+        beam_theory: None,
+    });
     let Rung { impact, solution, recording, .. } = rungs.last;
     pose.kept.keep(&impact.structure, recording);
     let known = Known::new(pose.scene, Ok(solver.min(1.0)), Ok(stated.min(1.0)));
-    Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason }))
+    Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, peaks, settled, spread, reason }))
 }
 
 /// The numbers of modes that were tried, and the result, in words.
@@ -419,13 +430,13 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Op
     let counts = rungs.counts();
     let reached = rungs.last.count;
     let (wanted, damping) = (small(pose.tolerance), lightly_damped(pose));
-    let changed = match rungs.changes().next() {
+    let changed = match rungs.changes(&rungs.restitution).next() {
         _ if rungs.is_complete() => "they make up the whole static compliance".to_owned(),
         Some((change, [from, to])) => format!(
             "from {from} to {to} modes the restitution changes by {}, and the relative speed of a flight between contacts by at \
              most {} of the speed of impact",
-            small(change.restitution),
-            small(change.flights)
+            small(change.itself),
+            small(change.motion)
         ),
         None => "the effect of further modes is not known".to_owned(),
     };
@@ -458,9 +469,11 @@ fn lightly_damped(pose: &Pose) -> &'static str {
     }
 }
 
-/// The answer: restitution, uncertainty, and choice of the modes.
+/// The uncertainty of an answer, and the choice of its modes.
 pub(super) struct Conclusion {
     pub known: Known,
+    /// Of the largest force of each contact.
+    pub peaks: Vec<Uncertainty>,
     pub settled: bool,
     pub spread: Option<f64>,
     pub reason: String,
@@ -468,7 +481,7 @@ pub(super) struct Conclusion {
 
 impl Choice {
     pub(super) fn modal(tolerance: f64, impact: Impact, solution: Solution, conclusion: Conclusion) -> Choice {
-        let Conclusion { known, settled, spread, reason } = conclusion;
+        let Conclusion { known, peaks, settled, spread, reason } = conclusion;
         let answer = Answer {
             outcome: solution.outcome.as_str(),
             stopped_by: solution.outcome.stopped_by(),
@@ -481,6 +494,6 @@ impl Choice {
             spread,
             ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)
         };
-        Choice { answer, impact: Some(impact) }
+        Choice { answer, impact: Some(impact), sub_impacts: solution.sub_impacts, peak_forces: peaks }
     }
 }

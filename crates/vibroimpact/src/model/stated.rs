@@ -22,7 +22,10 @@
 //! rod one half are bending modes and the other axial ones, because either kind alone may have hardly any part in the motion, and no
 //! modes at all may be stated of it.
 //!
-//! The second formula holds for any stated modes if the force jumps at first touch. Changes then decrease as slowly as `1/N`, and
+//! The second formula holds for the largest forces of contacts, which converge more slowly, with any stated modes; `e_r` is then a share of
+//! the largest force of the impact.
+//!
+//! It holds for any stated modes if the force jumps at first touch. Changes then decrease as slowly as `1/N`, and
 //! nearly vanish for some numbers of modes (`left_out.rs`), so that a third number, `M/2`, is compared as well, and `|e_(M/1.4) -
 //! e_(M/2)|` is another lower bound of the maximum. (If the structure moves before the impact, there is no third number.)
 //!
@@ -36,11 +39,12 @@ use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
 use super::guess::fewer;
-use super::left_out::{Change, by_changes, energy_of_remainder, jumps, restitution_per_impulse, with_softer_remainder};
+use super::left_out::{by_changes, energy_of_remainder, jumps, with_softer_remainder};
 use super::other_modes::{moves_before, needed, solve, with_modes};
+use super::quantity::Quantity;
 use super::settle::{Conclusion, LUCK};
 use super::static_tail::StaticTail;
-use super::uncertainty::Known;
+use super::uncertainty::{Known, Uncertainty, of_peaks};
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes};
@@ -86,6 +90,7 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     };
     let tolerance = impact.settings.tolerance;
     let solver = solution.restitution_uncertainty;
+    let mut peaks = of_peaks(&solution.sub_impacts, |_, _| Uncertainty::default());
     let known = if solution.restitution.is_some() {
         let compared = match beside {
             Some((compared, added)) => {
@@ -94,23 +99,31 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
             }
             None => compare(scene, kept, &impact, cost)?,
         };
-        let left_out = match compared {
-            Comparison::Fewer(tail, counts) => match tail.left_out(&impact, &solution) {
-                Some(left_out) => Ok(left_out),
-                None => {
-                    compare_with_more(scene, kept, &impact, counts, cost)?.map(|more| more.left_out(&impact, &solution))
-                }
-            },
-            Comparison::More(compared) => compared.map(|more| more.left_out(&impact, &solution)),
+        let restitution = Quantity::restitution(&impact);
+        let compared = match compared {
+            Comparison::Fewer(tail, counts) if !tail.left_out(&restitution, &solution).1 => {
+                Comparison::More(compare_with_more(scene, kept, &impact, counts, cost)?)
+            }
+            compared => compared,
         };
+        let left_out = |of: &Quantity| match &compared {
+            Comparison::Fewer(tail, _) => Ok(tail.left_out(of, &solution).0),
+            Comparison::More(Ok(more)) => Ok(more.left_out(of, &impact, &solution)),
+            Comparison::More(Err(why)) => Err(why.clone()),
+        };
+        peaks = of_peaks(&solution.sub_impacts, |i, of| Uncertainty {
+            solver: solution.sub_impacts[i].peak_force_uncertainty_n,
+            modes_left_out: left_out(of).ok(),
+            beam_theory: None,
+        });
         let solver = solver.ok_or("the same impact with a coarser tolerance stopped before it ended");
-        Known::new(scene, solver, left_out)
+        Known::new(scene, solver, left_out(&restitution).map(|left_out| left_out.min(1.0)))
     } else {
         Known::default()
     };
     let wanted = scene.tolerance.map_or(DEFAULT_TOLERANCE, |tolerance| 10.0 * tolerance);
     let settled = solver.is_some_and(|u| u <= wanted);
-    let conclusion = Conclusion { known, settled, spread: solver.filter(|_| !settled), reason };
+    let conclusion = Conclusion { known, peaks, settled, spread: solver.filter(|_| !settled), reason };
     Ok(Choice::modal(tolerance, impact, solution, conclusion))
 }
 
@@ -150,11 +163,10 @@ impl Other {
 }
 
 impl Compared {
-    /// Effect of the truncated modes on the solution of the impact.
-    fn left_out(&self, impact: &Impact, solution: &Solution) -> f64 {
-        let per_impulse = restitution_per_impulse(impact);
-        let change = |other: &Solution| Change::between(other, self.richer.or(solution), per_impulse);
-        let stated = change(solution).restitution;
+    /// Effect of the truncated modes on a quantity of the solution of the impact.
+    fn left_out(&self, of: &Quantity, impact: &Impact, solution: &Solution) -> f64 {
+        let change = |other: &Solution| of.change(other, self.richer.or(solution));
+        let stated = change(solution).itself;
         let energy = match &self.richer {
             Other::Itself => energy_of_remainder(impact, solution),
             Other::Solved(_, energy) => *energy,
@@ -162,18 +174,19 @@ impl Compared {
         let mut from = (self.count, &self.richer);
         let mut changes = Vec::new();
         for (count, fewer) in &self.fewer {
-            let changed = Change::between(fewer.or(solution), from.1.or(solution), per_impulse);
+            let changed = of.change(fewer.or(solution), from.1.or(solution));
             changes.push((changed.size(), from.0));
             from = (*count, fewer);
         }
         let further = changes.get(..1).map_or(0.0, |latest| {
             let jumps = jumps(&impact.law);
-            let accident = (LUCK * by_changes(latest, false)).max(energy);
-            let accident = if impact.remainder_modes > 0 || jumps { accident } else { 0.0 };
-            by_changes(&changes, jumps).max(accident).max(LEAST_SHARE * stated)
+            let accident = (LUCK * by_changes(latest, false, of.scale())).max(of.scale() * energy);
+            let may_agree = impact.remainder_modes > 0 || jumps || of.is_of_an_instant();
+            let accident = if may_agree { accident } else { 0.0 };
+            by_changes(&changes, jumps, of.scale()).max(accident).max(LEAST_SHARE * stated)
         });
         let softer = self.softer.as_ref().map_or(0.0, |softer| change(softer).size());
-        (stated + further + softer).min(1.0)
+        stated + further + softer
     }
 }
 

@@ -22,8 +22,9 @@
 
 use vibroimpact_sim::modal::{Settings, Solution, Structure};
 
-use super::left_out::{Change, jumps, restitution_per_impulse};
+use super::left_out::jumps;
 use super::other_modes::{moves_before, needed, solve, with_modes};
+use super::quantity::Quantity;
 use super::{Cost, Kept};
 use crate::impact::Impact;
 use crate::scene::{self, InvalidInput, Scene, compliance};
@@ -83,14 +84,14 @@ impl StaticTail {
         Ok((!stopped).then_some(StaticTail { whole, without }))
     }
 
-    /// Effect of the truncated modes on the solution of the impact; `None` if the few modes are too few for it.
-    pub fn left_out(&self, impact: &Impact, solution: &Solution) -> Option<f64> {
-        let per_impulse = restitution_per_impulse(impact);
-        let change = Change::between(&self.whole, &self.without, per_impulse);
-        let distance = Change::between(&self.whole, solution, per_impulse).restitution;
-        let agree = change.restitution.max(distance) <= AGREE * change.restitution.min(distance);
-        let effect = if agree { change.restitution } else { change.size() };
-        (distance <= NOISE + ASTRAY * effect).then_some(CAUTION * effect.max(distance))
+    /// Effect of the truncated modes on a quantity of the solution of the impact, and whether the few modes are enough for it. If they
+    /// are too few, the effect includes that of the modes that they lack.
+    pub fn left_out(&self, of: &Quantity, solution: &Solution) -> (f64, bool) {
+        let change = of.change(&self.whole, &self.without);
+        let distance = of.change(&self.whole, solution).itself;
+        let agree = change.itself.max(distance) <= AGREE * change.itself.min(distance);
+        let effect = if agree { change.itself } else { change.size() };
+        (CAUTION * effect.max(distance), distance <= NOISE + ASTRAY * effect)
     }
 }
 
@@ -146,9 +147,12 @@ mod tests {
     fn few_modes_that_are_too_few_are_not_used() {
         let (impact, tail) = tail(&[]);
         let (tail, solution) = (tail.unwrap(), impact.solve().unwrap());
-        assert!(tail.left_out(&impact, &solution).is_some_and(|left_out| left_out > 0.0 && left_out < 1e-4));
+        let of = Quantity::restitution(&impact);
+        let (left_out, enough) = tail.left_out(&of, &solution);
+        assert!(left_out > 0.0 && left_out < 1e-4 && enough);
         let elsewhere = solution.restitution.map(|restitution| restitution + 0.02);
-        assert_eq!(tail.left_out(&impact, &Solution { restitution: elsewhere, ..solution }), None);
+        let (left_out, enough) = tail.left_out(&of, &Solution { restitution: elsewhere, ..solution });
+        assert!(left_out > 0.02 && !enough);
     }
 
     #[test]

@@ -5,10 +5,11 @@ use std::fmt::Write;
 use super::{Answer, Comparison, Plan};
 use crate::text::{counted, filled, quantity, restitution, small, stopped};
 
-/// Breaks a sentence into lines of at most this many characters.
+/// Largest number of characters of a line.
 const WIDTH: usize = 96;
 
-fn wrapped(text: &str, indent: usize) -> String {
+/// Breaks a sentence into lines, all but the first indented.
+pub(crate) fn wrapped(text: &str, indent: usize) -> String {
     let lines = filled(text, |line| line.chars().count() + indent <= WIDTH);
     lines.join(&format!("\n{}", " ".repeat(indent)))
 }

@@ -8,6 +8,8 @@
 //! u = max_v |e_v - e|.
 //! ```
 //!
+//! The largest force of each contact that all four have changes in the same way.
+//!
 //! All four have remainder modes, and twice the expected number of modes for the tolerance. Where a number is stated, they have the
 //! closest number to it that is between once and twice the expected one, but at most twice the stated one. They are solved once at a
 //! loose tolerance, so that this costs no more than a few times the impact itself. If a scene does not state the theory, the cheaper
@@ -15,10 +17,12 @@
 //! solved beside it.
 
 use vibroimpact_sim::both;
-use vibroimpact_sim::modal::Settings;
+use vibroimpact_sim::modal::{Settings, Solution};
 
+use super::choice::Choice;
 use super::other_modes::needed as needed_modes;
-use super::uncertainty::Uncertainty;
+use super::quantity::Quantity;
+use super::uncertainty::{Uncertainty, of_peaks};
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
@@ -34,6 +38,9 @@ const RICHER: usize = 2;
 /// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;
 
+/// The restitution itself, without the motion behind it.
+const RESTITUTION: Quantity = Quantity::Restitution { per_impulse: 0.0 };
+
 /// The impacts on the beams of one scene that are solved so far, so that the choice of the theory and its uncertainty do not solve an
 /// impact twice.
 #[derive(Default)]
@@ -44,34 +51,14 @@ pub(super) struct Found {
     concurrent: bool,
 }
 
-/// The restitution on one beam.
+/// The impact on one beam.
 pub(super) struct Solved {
     /// Expected number of modes.
     needed: Option<usize>,
-    restitution: Option<f64>,
+    solution: Solution,
     cost: Cost,
     /// The modes of this beam that were computed.
     modes: KnownModes,
-}
-
-/// Restitutions of one impact by both theories.
-struct Theories {
-    euler_bernoulli: f64,
-    timoshenko: f64,
-    /// By Timoshenko's with other shear coefficients.
-    others: Vec<f64>,
-}
-
-impl Theories {
-    fn difference(&self) -> f64 {
-        (self.euler_bernoulli - self.timoshenko).abs()
-    }
-
-    /// The largest change from what a theory gives.
-    fn around(&self, theory: BeamTheory) -> f64 {
-        let base = if theory == BeamTheory::Timoshenko { self.timoshenko } else { self.euler_bernoulli };
-        self.others.iter().map(|e| (e - base).abs()).fold(self.difference(), f64::max)
-    }
 }
 
 impl Found {
@@ -83,7 +70,9 @@ impl Found {
     /// Whether the theory was chosen by impacts with a rebound, so that its uncertainty will be wanted, and can be estimated beside the
     /// answer.
     pub fn goes_on(&self) -> bool {
-        self.concurrent && !self.solved.is_empty() && self.solved.iter().all(|solved| solved.restitution.is_some())
+        self.concurrent
+            && !self.solved.is_empty()
+            && self.solved.iter().all(|solved| solved.solution.restitution.is_some())
     }
 
     /// The impacts that are not solved yet.
@@ -111,36 +100,39 @@ impl Found {
         self.solved.extend(others);
     }
 
-    /// The restitutions by the first two theories, or by all; the inner `Err` states why they are not known.
-    fn theories(
-        &mut self,
-        scene: &Scene,
-        all: bool,
-        cost: &mut Cost,
-    ) -> Result<Result<Theories, String>, InvalidInput> {
+    /// Solves the impact by the first two theories, or by all; the inner `Err` states why they cannot be compared.
+    fn theories(&mut self, scene: &Scene, all: bool, cost: &mut Cost) -> Result<Result<(), String>, InvalidInput> {
         let beams = beams(scene)?;
         let wanted = if all { beams.len() } else { beams.len().min(2) };
         if self.solved.len() < wanted {
             let others = self.up_to(scene, &beams[..wanted])?;
             self.add(others, cost);
         }
-        let Some(restitutions) = self.solved.iter().map(|solved| solved.restitution).collect::<Option<Vec<f64>>>()
-        else {
-            return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned()));
-        };
-        Ok(match restitutions[..] {
-            [timoshenko, euler_bernoulli, ref others @ ..] => {
-                Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
-            }
-            _ => Err("there is no other theory to be compared with".to_owned()),
+        Ok(if !self.solved.iter().all(|solved| solved.solution.restitution.is_some()) {
+            Err("by one of the theories the impact does not end in a rebound".to_owned())
+        } else if self.solved.len() < 2 {
+            Err("there is no other theory to be compared with".to_owned())
+        } else {
+            Ok(())
         })
+    }
+
+    /// The largest change of a quantity from what a theory gives; infinite if not all impacts have it.
+    fn around(&self, theory: BeamTheory, of: &Quantity) -> f64 {
+        let Some(base) = self.solved.get(place(Some(theory))) else { return f64::INFINITY };
+        self.solved.iter().map(|other| of.change(&other.solution, &base.solution).itself).fold(0.0, f64::max)
     }
 
     /// The modes that were computed for the beam of this scene by its theory.
     pub fn modes_of(&mut self, scene: &Scene) -> KnownModes {
-        let place = usize::from(scene.structure.bending_theory() == Some(BeamTheory::EulerBernoulli));
+        let place = place(scene.structure.bending_theory());
         self.solved.get_mut(place).map_or_else(KnownModes::default, |solved| std::mem::take(&mut solved.modes))
     }
+}
+
+/// The place of a theory among the first two of [`beams`].
+fn place(theory: Option<BeamTheory>) -> usize {
+    usize::from(theory == Some(BeamTheory::EulerBernoulli))
 }
 
 /// The beam of a scene by Timoshenko's theory, by Euler-Bernoulli's, and by Timoshenko's with other shear coefficients; none if it
@@ -174,7 +166,7 @@ fn solve(scene: &Scene, beam: &Beam, needed: Option<Option<usize>>) -> Result<So
     let settings = Settings { tolerance: SOLVER_SHARE * tolerance, estimate_uncertainty: false, ..*settings };
     let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
     cost.add(&solution.counts, structure.modes.len());
-    Ok(Solved { needed, restitution: solution.restitution, cost, modes: kept.modes })
+    Ok(Solved { needed, solution, cost, modes: kept.modes })
 }
 
 /// The number of modes with which the theories are compared.
@@ -202,15 +194,16 @@ impl Scene {
             return Ok(None);
         }
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let difference = |found: &Found| found.around(BeamTheory::Timoshenko, &RESTITUTION);
         let (theory, why) = match found.theories(self, false, cost)? {
-            Ok(theories) if theories.difference() <= SHARE * tolerance => {
-                let difference = small(theories.difference());
+            Ok(()) if difference(found) <= SHARE * tolerance => {
+                let difference = small(difference(found));
                 let why =
                     format!("by Euler-Bernoulli's theory, from which Timoshenko's differs by some {difference} here");
                 (BeamTheory::EulerBernoulli, why)
             }
-            Ok(theories) => {
-                let difference = small(theories.difference());
+            Ok(()) => {
+                let difference = small(difference(found));
                 let why =
                     format!("by Timoshenko's theory, from which Euler-Bernoulli's differs by some {difference} here");
                 (BeamTheory::Timoshenko, why)
@@ -235,24 +228,32 @@ impl Scene {
     /// The change of an answer by another theory of bending, as a part of its uncertainty.
     pub(super) fn judge_theory(
         &self,
-        answer: Answer,
+        choice: Choice,
         found: &mut Found,
         cost: &mut Cost,
-    ) -> Result<Answer, InvalidInput> {
+    ) -> Result<Choice, InvalidInput> {
+        let Choice { answer, impact, sub_impacts, peak_forces } = choice;
         let (Some(theory), Some(_), false) = (answer.theory, answer.restitution, beams(self)?.is_empty()) else {
-            return Ok(answer);
+            return Ok(Choice { answer, impact, sub_impacts, peak_forces });
         };
         const PART: &str = "beam theory: ";
         let mut not_known: Vec<String> =
             answer.not_known.iter().filter(|why| !why.starts_with(PART)).cloned().collect();
-        let beam_theory = match found.theories(self, true, cost)? {
-            Ok(theories) => Some(theories.around(theory).min(1.0)),
+        let (beam_theory, peak_forces) = match found.theories(self, true, cost)? {
+            Ok(()) => {
+                let peaks = of_peaks(&sub_impacts, |i, of| Uncertainty {
+                    beam_theory: Some(found.around(theory, of)),
+                    ..peak_forces[i]
+                });
+                (Some(found.around(theory, &RESTITUTION).min(1.0)), peaks)
+            }
             Err(why) => {
                 not_known.push(format!("{PART}{why}"));
-                None
+                (None, peak_forces)
             }
         };
         let uncertainty = Uncertainty { beam_theory, ..answer.uncertainty };
-        Ok(Answer { restitution_uncertainty: uncertainty.whole(), uncertainty, not_known, ..answer })
+        let answer = Answer { restitution_uncertainty: uncertainty.whole(), uncertainty, not_known, ..answer };
+        Ok(Choice { answer, impact, sub_impacts, peak_forces })
     }
 }

@@ -1,6 +1,9 @@
-//! The uncertainty of a restitution, part by part.
+//! The uncertainty of a restitution and of forces, part by part.
 
 use serde::Serialize;
+use vibroimpact_sim::modal::SubImpact;
+
+use super::quantity::Quantity;
 
 use crate::scene::{Scene, Structure};
 
@@ -8,7 +11,7 @@ use crate::scene::{Scene, Structure};
 /// agrees with its numerical integration to this accuracy (`tests/restitution.rs` of `contact-models`).
 pub(super) const CLOSED_FORM: f64 = 5e-12;
 
-/// The uncertainty of a restitution in parts that add up. A part is null if it cannot be known;
+/// The uncertainty of a restitution, or of a force in its unit, in parts that add up. A part is null if it cannot be known;
 /// [`Answer::not_known`](super::Answer::not_known) then states the reason.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Uncertainty {
@@ -24,11 +27,19 @@ pub struct Uncertainty {
 
 impl Uncertainty {
     /// The whole of what can be estimated: the sum of the parts that are known; `None` if the solver's part is not, without which no
-    /// digit of the restitution is known.
+    /// digit is known.
     pub fn whole(&self) -> Option<f64> {
         self.solver?;
         let known = self.parts().into_iter().filter_map(|(_, part)| part);
         Some(known.sum::<f64>().min(f64::MAX))
+    }
+
+    /// The whole, if every part that is known of `other` is known here as well: the uncertainty of a force beside that of the
+    /// restitution, of which it would otherwise lack a part.
+    pub fn whole_beside(&self, other: &Uncertainty) -> Option<f64> {
+        let lacks =
+            self.parts().into_iter().zip(other.parts()).any(|((_, own), (_, other))| own.is_none() && other.is_some());
+        self.whole().filter(|_| !lacks)
     }
 
     /// Difference of the restitution from its limit by the same theory: the sum of the known parts without that of the theory.
@@ -40,6 +51,27 @@ impl Uncertainty {
     pub fn parts(&self) -> [(&'static str, Option<f64>); 3] {
         [("solver", self.solver), ("modes left out", self.modes_left_out), ("beam theory", self.beam_theory)]
     }
+}
+
+/// The uncertainty of the largest force of each interval of contact (N), part by part. The error of a motion persists, and two motions
+/// may agree in one number by accident: a part is at least that of every interval before. It is not known if another impact has no
+/// counterpart of the interval (`of` is then infinite), and from the first interval on for which it exceeds the largest of all forces.
+pub(super) fn of_peaks(contacts: &[SubImpact], of: impl Fn(usize, &Quantity) -> Uncertainty) -> Vec<Uncertainty> {
+    let largest_n = contacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
+    let mut largest = [0.0f64; 3];
+    let mut peak = |i: usize| {
+        let Uncertainty { solver, modes_left_out, beam_theory } = of(i, &Quantity::PeakForce { of: contacts, i });
+        let mut parts = [solver, modes_left_out, beam_theory];
+        for (part, largest) in parts.iter_mut().zip(&mut largest) {
+            *part = part.filter(|part| part.is_finite()).and_then(|part| {
+                *largest = largest.max(part);
+                (*largest <= largest_n).then_some(*largest)
+            });
+        }
+        let [solver, modes_left_out, beam_theory] = parts;
+        Uncertainty { solver, modes_left_out, beam_theory }
+    };
+    (0..contacts.len()).map(&mut peak).collect()
 }
 
 /// The uncertainty of a restitution, and why parts of it are not known.
@@ -110,5 +142,7 @@ mod tests {
         let some = Uncertainty { solver: Some(0.25), modes_left_out: None, beam_theory: Some(0.5) };
         assert_eq!(some.whole(), Some(0.75));
         assert_eq!(Uncertainty { solver: None, ..some }.whole(), None);
+        assert_eq!(some.whole_beside(&Uncertainty { solver: Some(0.1), ..Uncertainty::default() }), Some(0.75));
+        assert_eq!(some.whole_beside(&Uncertainty { modes_left_out: Some(0.1), ..some }), None);
     }
 }

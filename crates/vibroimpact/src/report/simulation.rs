@@ -9,8 +9,8 @@ use crate::model::{Answer, parts_in_words};
 use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
-use crate::summary::Summary;
-use crate::text::{self, leaves, quantity, restitution, significant, stopped};
+use crate::summary::{PEAK_FORCE, Summary};
+use crate::text::{self, leaves, plus_minus, quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
 /// Under the picture of an impact.
@@ -53,12 +53,15 @@ pub fn of_impact(
                 quantity(contact.end_s, "s"),
                 quantity(contact.impulse_n_s, "N s"),
                 quantity(contact.peak_force_n, "N"),
+                plus_minus(contact.peak_force_uncertainty_n, "N"),
                 quantity(contact.peak_compression_m, "m"),
             ]
         })
         .collect();
-    report.table(&["contact", "from", "to", "impulse", "largest force", "largest compression"], &rows);
+    report.table(&["contact", "from", "to", "impulse", "largest force", "", "largest compression"], &rows);
     more(&mut report, summary.sub_impact_count);
+    let not_known = summary.choice.iter().flat_map(|choice| &choice.not_known);
+    not_known.filter(|why| why.starts_with(PEAK_FORCE)).for_each(|why| report.text(&format!("{}.", literal(why))));
     report.heading("Energy");
     report.table(&["where", "energy", "share"], &energy(impact, summary));
     report.text(

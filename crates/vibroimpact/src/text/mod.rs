@@ -6,12 +6,14 @@ use std::fmt::Write;
 
 use vibroimpact_sim::modal::{Mode, Striker};
 
-use crate::model::answer_text;
+use crate::model::{answer_text, wrapped};
 use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
-use crate::summary::{Falling, Summary};
+use crate::summary::{Falling, PEAK_FORCE, Summary};
 pub use parts::{counted, printable, quantity, shorten, significant};
-pub(crate) use parts::{filled, leaves, quantity_apart, residual, restitution, small, stopped, superscript};
+pub(crate) use parts::{
+    filled, leaves, plus_minus, quantity_apart, residual, restitution, small, stopped, superscript,
+};
 
 /// Shares of the energy below this value are due to rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -167,23 +169,28 @@ pub fn result(summary: &Summary) -> String {
     if summary.sub_impact_count > 0 {
         let _ = writeln!(
             text,
-            "\n  {:>3}{:>wide$}{:>wide$}{:>16}{:>14}{:>14}",
-            "#", "from", "to", "impulse", "peak force", "compression"
+            "\n  {:>3}{:>wide$}{:>wide$}{:>16}{:>14}{:>12}{:>14}",
+            "#", "from", "to", "impulse", "peak force", "", "compression"
         );
     }
     for (i, (contact, [from, to])) in listed.zip(&times).enumerate() {
         let _ = writeln!(
             text,
-            "  {:>3}{from:>wide$}{to:>wide$}{:>16}{:>14}{:>14}",
+            "  {:>3}{from:>wide$}{to:>wide$}{:>16}{:>14}{:>12}{:>14}",
             i + 1,
             quantity(contact.impulse_n_s, "N s"),
             quantity(contact.peak_force_n, "N"),
+            plus_minus(contact.peak_force_uncertainty_n, "N"),
             quantity(contact.peak_compression_m, "m")
         );
     }
     if summary.sub_impact_count > LISTED {
         let _ =
             writeln!(text, "  ... and {} more (all of them with --json or --out)", summary.sub_impact_count - LISTED);
+    }
+    let not_known = summary.choice.iter().flat_map(|choice| &choice.not_known);
+    for why in not_known.filter(|why| why.starts_with(PEAK_FORCE)) {
+        let _ = writeln!(text, "  {}", wrapped(why, 4));
     }
     text
 }

@@ -68,6 +68,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     with_digits(value, unit, QUANTITY_DIGITS)
 }
 
+/// As [`quantity`], with two significant digits and a sign; `?` if it is not known.
+pub(crate) fn plus_minus(uncertainty: Option<f64>, unit: &str) -> String {
+    uncertainty.map_or("?".to_owned(), |uncertainty| format!("± {}", with_digits(uncertainty, unit, 2)))
+}
+
 /// As [`quantity`], with so many digits that two values this far apart differ in the last two of them.
 pub(crate) fn quantity_apart(value: f64, unit: &str, distance: f64) -> String {
     let needed = 2.0 + value.abs().log10().floor() - distance.abs().log10().floor();

@@ -1,0 +1,158 @@
+//! The quantities of an impact whose uncertainty is estimated from other impacts, and their changes.
+
+use vibroimpact_sim::modal::{Solution, SubImpact};
+
+use super::left_out::approach_m_s;
+use crate::impact::Impact;
+
+/// Weight of a change of the motion behind a quantity.
+const MOTION: f64 = 0.5;
+
+/// A quantity of an impact.
+pub(super) enum Quantity<'a> {
+    /// The restitution.
+    Restitution {
+        /// `(1/m + sum phi^2)/v`, with the rigid-body motions `phi` of the structure and the speed of approach `v`: its change per
+        /// impulse (1/(N s)).
+        per_impulse: f64,
+    },
+    /// The largest force of number `i` of these intervals of contact (N).
+    PeakForce { of: &'a [SubImpact], i: usize },
+}
+
+/// Difference between two solutions in a quantity, in its unit.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Change {
+    /// Of the quantity itself. If only one solution has it, it is 1 for a restitution, and infinite for a force.
+    pub itself: f64,
+    /// Of the motion behind it, because two solutions may agree in one number by accident. For a restitution, of the speed of a
+    /// flight between two contacts, relative to the rigid-body motion of the structure and as a share of the speed of impact: of the
+    /// restitution that the impact would have if it ended there. For a force, of the impulse of the same contact, as a share of it
+    /// that is taken of the force.
+    pub motion: f64,
+}
+
+impl Change {
+    /// As an error of the quantity.
+    pub fn size(self) -> f64 {
+        self.itself.max(MOTION * self.motion)
+    }
+}
+
+impl Quantity<'_> {
+    /// The restitution of an impact.
+    pub fn restitution(impact: &Impact) -> Quantity<'static> {
+        let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / approach_m_s(impact);
+        Quantity::Restitution { per_impulse }
+    }
+
+    /// Its value in a solution.
+    pub fn value(&self, solution: &Solution) -> Option<f64> {
+        match self {
+            Quantity::Restitution { .. } => solution.restitution,
+            Quantity::PeakForce { .. } => self.contact(solution).map(|contact| contact.peak_force_n),
+        }
+    }
+
+    /// What a share of the energy or of the momentum of the impact changes in it, if all of it does.
+    pub fn scale(&self) -> f64 {
+        match self {
+            Quantity::Restitution { .. } => 1.0,
+            Quantity::PeakForce { of, .. } => of.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max),
+        }
+    }
+
+    /// Whether fast modes change it as much as they move, and not only by the momentum that they take up.
+    pub fn is_of_an_instant(&self) -> bool {
+        matches!(self, Quantity::PeakForce { .. })
+    }
+
+    /// Its change from one solution to another.
+    pub fn change(&self, a: &Solution, b: &Solution) -> Change {
+        let unknown = match self {
+            Quantity::Restitution { .. } => 1.0,
+            Quantity::PeakForce { .. } => f64::INFINITY,
+        };
+        let itself = self.value(a).zip(self.value(b)).map_or(unknown, |(a, b)| (a - b).abs());
+        let motion = match *self {
+            Quantity::Restitution { per_impulse } if per_impulse > 0.0 && per_impulse.is_finite() => {
+                distance(&flights(a, per_impulse), &flights(b, per_impulse))
+            }
+            Quantity::Restitution { .. } => 0.0,
+            Quantity::PeakForce { of, i } => {
+                let impulses = self.contact(a).zip(self.contact(b)).map(|(a, b)| [a.impulse_n_s, b.impulse_n_s]);
+                let share = impulses.map_or(0.0, |[a, b]| (a - b).abs() / a.abs().max(b.abs()).max(f64::MIN_POSITIVE));
+                share * of[i].peak_force_n
+            }
+        };
+        Change { itself, motion }
+    }
+
+    /// The interval of contact of another solution whose force this is.
+    fn contact<'s>(&self, solution: &'s Solution) -> Option<&'s SubImpact> {
+        match self {
+            Quantity::Restitution { .. } => None,
+            Quantity::PeakForce { of, i } => SubImpact::counterpart(*i, of, &solution.sub_impacts),
+        }
+    }
+}
+
+/// One more than the restitution that the impact would have if it ended with each of its separations.
+fn flights(solution: &Solution, per_impulse: f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let separations = solution.sub_impacts.iter();
+    separations
+        .map(|contact| {
+            sum += contact.impulse_n_s;
+            sum * per_impulse
+        })
+        .collect()
+}
+
+/// Largest difference between the flights of one impact and the nearest ones of another.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let nearest = |x: &f64, of: &[f64]| of.iter().map(|y| (x - y).abs()).fold(f64::INFINITY, f64::min);
+    let directed = |of: &[f64], to: &[f64]| of.iter().map(|x| nearest(x, to)).fold(0.0, f64::max);
+    if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impacts_are_as_far_apart_as_their_flights() {
+        assert_eq!(distance(&[], &[]), 0.0);
+        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.5]), 0.0);
+        // a third contact that does not change the result
+        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
+        assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    /// On a free beam that is much lighter than the striker, at rest and in motion.
+    #[test]
+    fn a_flight_counts_as_the_restitution_of_an_impact_that_ends_with_it() {
+        let mut scene = serde_json::json!({
+            "structure": { "kind": "beam", "ends": ["free", "free"], "damping_ratio": 0.02, "segments": [
+                { "length_m": 0.3, "flexural_rigidity_n_m2": 20.0, "mass_per_length_kg_m": 0.2 }
+            ] },
+            "striker": { "mass_kg": 3.0, "speed_m_s": 0.5 },
+            "contact": { "law": "linear-spring", "stiffness_n_m": 1e6 }, "location_m": 0.1, "modes": 6
+        });
+        for start in [
+            serde_json::Value::Null,
+            serde_json::json!({ "gap_m": 1e-4, "moving_modes": [
+            { "mode": 1, "velocity_m_s": 0.2, "location_m": 0.1 }
+        ] }),
+        ] {
+            if !start.is_null() {
+                scene["start"] = start;
+            }
+            let impact = crate::Scene::from_value(&scene).unwrap().impact().unwrap();
+            let solution = impact.solve().unwrap();
+            let Quantity::Restitution { per_impulse } = Quantity::restitution(&impact) else { unreachable!() };
+            let last = flights(&solution, per_impulse).pop().unwrap();
+            assert!((last - 1.0 - solution.restitution.unwrap()).abs() < 1e-8, "{last}, {solution:?}");
+        }
+    }
+}
