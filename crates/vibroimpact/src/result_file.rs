@@ -12,7 +12,7 @@ use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
 use crate::simulate::Simulation;
 use crate::stop_word::word;
-use crate::summary::{Contact, Cost, Energy, PEAK_FORCE, RodMotion, Summary};
+use crate::summary::{Contact, Cost, Energy, RodMotion, Summary};
 use crate::trust::Check;
 
 /// The object of `simulate --json` and `result.json`. The keys are always the same; quantities that a model does not resolve are
@@ -51,6 +51,9 @@ pub struct ResultFile {
     pub sub_impact_count: Option<usize>,
     /// The contacts in order of time; null for a model that does not resolve them.
     pub sub_impacts: Option<Vec<SubImpact>>,
+    /// Why parts of the uncertainty of largest forces are not known that are known of the restitution, a sentence each that begins with
+    /// the part.
+    pub peak_forces_not_known: Vec<String>,
     /// Velocity of the striker at the end, positive away from the structure (m/s).
     pub striker_velocity_m_s: Option<f64>,
     /// Motion of a dropped rod at the end; null for everything else.
@@ -91,7 +94,7 @@ pub struct SubImpact {
     /// Estimated error of the largest force: the sum of the known parts (N); null where one is not known that is known of the
     /// restitution.
     pub peak_force_uncertainty_n: Option<f64>,
-    /// Its parts (N); null where a part cannot be known, which `choice.not_known` explains.
+    /// Its parts (N); null where a part cannot be known, which `peak_forces_not_known` or `choice.not_known` explains.
     pub peak_force_uncertainty_parts_n: Uncertainty,
     /// Largest compression (m).
     pub peak_compression_m: f64,
@@ -132,6 +135,7 @@ impl ResultFile {
             uncertainty,
             sub_impact_count,
             sub_impacts,
+            peak_forces_not_known,
             striker_velocity_m_s,
             rod,
             falling,
@@ -162,6 +166,7 @@ impl ResultFile {
             uncertainty,
             sub_impact_count: Some(sub_impact_count),
             sub_impacts: Some(sub_impacts.into_iter().map(contact).collect()),
+            peak_forces_not_known,
             striker_velocity_m_s: Some(striker_velocity_m_s),
             rod,
             falling,
@@ -189,6 +194,7 @@ impl ResultFile {
             uncertainty: answer.uncertainty,
             sub_impact_count: answer.sub_impact_count,
             sub_impacts: None,
+            peak_forces_not_known: Vec::new(),
             // the structure is at rest before the impact, and the restitution is the striker's
             striker_velocity_m_s: match scene.structure {
                 Structure::DroppedRod(_) => None,
@@ -213,8 +219,7 @@ impl ResultFile {
     /// # Errors
     /// As [`Scene::posed_on_infinite`].
     pub fn of_infinite(scene: &Scene, scale: &Scale, solution: &Solution) -> Result<ResultFile, InvalidInput> {
-        let mut answer = scene.infinite_answer(solution);
-        answer.not_known.push(format!("{PEAK_FORCE}: not estimated for infinite structures"));
+        let answer = scene.infinite_answer(solution);
         let found = infinite::Summary::new(solution, Some(scale));
         let momentum = scene.posed_on_infinite()?.striker.mass_kg * scale.speed_m_s;
         let mut compression = vec![0.0_f64; solution.sub_impacts.len()];
@@ -237,6 +242,7 @@ impl ResultFile {
         });
         Ok(ResultFile {
             sub_impacts: Some(contacts.collect()),
+            peak_forces_not_known: vec!["no part: not estimated for infinite structures".to_owned()],
             end_s: solution.sub_impacts.last().and_then(|contact| contact.end).map(|end| scale.time_s * end),
             infinite: Some(found),
             ..ResultFile::of_answer(scene, &answer)

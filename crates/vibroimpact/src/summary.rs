@@ -26,6 +26,9 @@ pub struct Summary {
     pub sub_impact_count: usize,
     /// The contacts in order of time.
     pub sub_impacts: Vec<Contact>,
+    /// Why parts of the uncertainty of largest forces are not known that are known of the restitution, a sentence each that begins with
+    /// the part.
+    pub peak_forces_not_known: Vec<String>,
     /// Velocity of the striker at the end, positive away from the structure (m/s).
     pub striker_velocity_m_s: f64,
     /// Motion of a dropped rod at the end; null for other structures.
@@ -89,7 +92,7 @@ pub struct Contact {
     /// Estimated error of the largest force: the sum of the known parts (N); null where one is not known that is known of the
     /// restitution.
     pub peak_force_uncertainty_n: Option<f64>,
-    /// Its parts (N); null where a part cannot be known, which `choice.not_known` explains.
+    /// Its parts (N); null where a part cannot be known, which `peak_forces_not_known` or `choice.not_known` explains.
     pub peak_force_uncertainty_parts_n: Uncertainty,
     /// Largest compression (m).
     pub peak_compression_m: f64,
@@ -175,6 +178,7 @@ impl Summary {
             uncertainty: solved(solution.restitution_uncertainty),
             sub_impact_count: solution.sub_impacts.len(),
             sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
+            peak_forces_not_known: Vec::new(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
             rod: None,
             falling: None,
@@ -200,7 +204,7 @@ impl Summary {
 
     /// The same with the choice of the model, whose restitution and uncertainties are used.
     pub fn chosen(self, choice: Choice) -> Summary {
-        let Choice { mut answer, sub_impacts, peak_forces, .. } = choice;
+        let Choice { answer, sub_impacts, peak_forces, .. } = choice;
         let mut contacts = self.sub_impacts;
         if peak_forces.len() == contacts.len() {
             let judged = sub_impacts.iter().zip(peak_forces);
@@ -209,11 +213,11 @@ impl Summary {
         for contact in &mut contacts {
             contact.peak_force_uncertainty_n = contact.peak_force_uncertainty_parts_n.whole_beside(&answer.uncertainty);
         }
-        answer.not_known.extend(peaks_not_known(&answer, &contacts));
         Summary {
             restitution: answer.restitution,
             restitution_uncertainty: answer.restitution_uncertainty,
             uncertainty: answer.uncertainty,
+            peak_forces_not_known: peak_forces_not_known(&answer, &contacts),
             sub_impacts: contacts,
             choice: Some(answer),
             ..self
@@ -221,13 +225,10 @@ impl Summary {
     }
 }
 
-/// How a sentence begins that states why uncertainties of largest forces are not known.
-pub(crate) const PEAK_FORCE: &str = "peak force";
-
 /// Why parts of the uncertainty of largest forces are not known that are known of the restitution.
-fn peaks_not_known(answer: &Answer, contacts: &[Contact]) -> Vec<String> {
+fn peak_forces_not_known(answer: &Answer, contacts: &[Contact]) -> Vec<String> {
     if answer.restitution.is_none() && !contacts.is_empty() {
-        return vec![format!("{PEAK_FORCE}: not estimated where there is no restitution")];
+        return vec!["no part: not estimated where there is no restitution".to_owned()];
     }
     let parts = answer.uncertainty.parts().into_iter().enumerate().filter(|(_, (_, part))| part.is_some());
     let of_part = |(place, (name, _)): (usize, (&str, Option<f64>))| {
@@ -244,7 +245,7 @@ fn peaks_not_known(answer: &Answer, contacts: &[Contact]) -> Vec<String> {
             }
             (_, model) => format!("the model {} bounds the error of the restitution alone", model.as_str()),
         };
-        Some(format!("{PEAK_FORCE}, {name}: {why}"))
+        Some(format!("{name}: {why}"))
     };
     parts.filter_map(of_part).collect()
 }

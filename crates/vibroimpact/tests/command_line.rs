@@ -104,7 +104,8 @@ fn times_of_many_digits_keep_their_columns_apart() {
     let text = stdout(&run(folder.path(), &["simulate", "scene.json"]));
     let second = text.lines().find(|line| line.starts_with("    2 ")).unwrap();
     let words: Vec<&str> = second.split_whitespace().collect();
-    assert_eq!(words.len(), 12, "{text}");
+    // the uncertainty of the force has a sign, a number and a unit, or is not known
+    assert!([13, 15].contains(&words.len()), "{text}");
     assert!(words[1].len() >= 12 && words[2] == "ks" && words[4] == "ks", "{text}");
 }
 
@@ -210,6 +211,12 @@ fn modes_lists_frequencies_and_shapes_in_the_form_of_a_modal_structure() {
         fields.remove("trust");
         fields.remove("restitution_uncertainty").unwrap();
         let uncertainty = fields.remove("uncertainty").unwrap();
+        fields.remove("peak_forces_not_known").unwrap();
+        for contact in fields["sub_impacts"].as_array_mut().unwrap() {
+            let contact = contact.as_object_mut().unwrap();
+            contact.remove("peak_force_uncertainty_n").unwrap();
+            contact["peak_force_uncertainty_parts_n"] = contact["peak_force_uncertainty_parts_n"]["solver"].clone();
+        }
         (result, choice["restitution"].clone(), uncertainty["solver"].clone())
     };
     assert_eq!(result("modal.json"), result("scene.json"));

@@ -9,7 +9,7 @@ use crate::model::{Answer, parts_in_words};
 use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
-use crate::summary::{PEAK_FORCE, Summary};
+use crate::summary::Summary;
 use crate::text::{self, leaves, plus_minus, quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
@@ -60,8 +60,9 @@ pub fn of_impact(
         .collect();
     report.table(&["contact", "from", "to", "impulse", "largest force", "", "largest compression"], &rows);
     more(&mut report, summary.sub_impact_count);
-    let not_known = summary.choice.iter().flat_map(|choice| &choice.not_known);
-    not_known.filter(|why| why.starts_with(PEAK_FORCE)).for_each(|why| report.text(&format!("{}.", literal(why))));
+    for why in &summary.peak_forces_not_known {
+        report.text(&format!("Largest force, {}.", literal(why)));
+    }
     report.heading("Energy");
     report.table(&["where", "energy", "share"], &energy(impact, summary));
     report.text(

@@ -9,7 +9,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use crate::model::{answer_text, wrapped};
 use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
-use crate::summary::{Falling, PEAK_FORCE, Summary};
+use crate::summary::{Falling, Summary};
 pub use parts::{counted, printable, quantity, shorten, significant};
 pub(crate) use parts::{
     filled, leaves, plus_minus, quantity_apart, residual, restitution, small, stopped, superscript,
@@ -188,9 +188,8 @@ pub fn result(summary: &Summary) -> String {
         let _ =
             writeln!(text, "  ... and {} more (all of them with --json or --out)", summary.sub_impact_count - LISTED);
     }
-    let not_known = summary.choice.iter().flat_map(|choice| &choice.not_known);
-    for why in not_known.filter(|why| why.starts_with(PEAK_FORCE)) {
-        let _ = writeln!(text, "  {}", wrapped(why, 4));
+    for why in &summary.peak_forces_not_known {
+        let _ = writeln!(text, "  peak force, {}", wrapped(why, 4));
     }
     text
 }
