@@ -2,14 +2,14 @@
 //!
 //! Such ends reflect every sine or cosine into itself. `w = sin k x` from a pinned end and `w = cos k x` from a guided one, with
 //! `k L = n pi` between like and `(n - 1/2) pi` between unlike ends, are therefore modes of either theory, without a search. Each has
-//! the frequencies of its wave number: with `s`, `j` and `p` of `waves.rs`,
+//! the frequencies of its wave number, with the shear flexibility `s = 1/(kappa G A)` and the axial force `T`:
 //!
 //! ```text
 //! s rho I m omega^4 - (m (1 + s EI k^2) + rho I k^2) omega^2 + EI k^4 + T k^2 = 0.
 //! ```
 //!
-//! With shear and rotary inertia there are two, the second of which is that of the second spectrum. The rotation of the sections is
-//! `X/k` times the slope of a wave of this number without shear, where `X = k^2 - s m omega^2` is the positive root of
+//! With shear and rotary inertia there are two, the second of which is that of the second spectrum. If the displacement has the amplitude
+//! 1, the rotation of the sections has the amplitude `X/k`, where `X = k^2 - s m omega^2` is the positive root of
 //!
 //! ```text
 //! rho I X^2 - k^2 (rho I - s m EI) X - s m^2 omega^2 = 0,
@@ -85,18 +85,21 @@ pub(crate) fn standing_waves(span: &Span, ends: [End; 2], wanted: usize) -> Opti
         _ => return None,
     };
     let starts_pinned = ends[0] == Pinned;
-    let number = |n: usize| (n as f64 - shift) * PI / span.length;
-    if span.foundation != 0.0 || squared_frequencies(span, number(1))[0] <= 0.0 {
+    let of_number = |n: usize| {
+        let k = (n as f64 - shift) * PI / span.length;
+        (k, squared_frequencies(span, k))
+    };
+    if span.foundation != 0.0 || of_number(1).1[0] <= 0.0 {
         return None;
     }
-    let first = |n: usize| wave(span, starts_pinned, number(n), squared_frequencies(span, number(n))[0], 0);
-    let mut waves: Vec<Wave> = (1..=wanted).map(first).collect();
+    let numbers: Vec<(f64, [f64; 2])> = (1..=wanted).map(of_number).collect();
+    let mut waves: Vec<Wave> =
+        numbers.iter().map(|&(k, [squared, _])| wave(span, starts_pinned, k, squared, 0)).collect();
     let fastest = waves.last().map_or(0.0, |(omega, _)| *omega);
     if ends == [Pinned; 2] && span.shear * span.rotary > 0.0 {
         waves.push(pure_shear(span));
     }
-    for n in 1..=wanted {
-        let (k, squared) = (number(n), squared_frequencies(span, number(n))[1]);
+    for (k, [_, squared]) in numbers {
         if squared.is_nan() || squared >= fastest * fastest {
             break;
         }

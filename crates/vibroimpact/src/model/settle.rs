@@ -361,10 +361,10 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             rungs.last.find_unseen(pose, several_contacts && rungs.share_tightest_tolerance(), cost)?;
         }
         let (solver, left_out) = (rungs.solver(&rungs.restitution), rungs.left_out(&rungs.restitution));
-        let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
+        let both_end = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
         // after several contacts, two impacts may agree although both miss the same contact: a third one is required
         let several = several_contacts && rungs.near().count() < 3;
-        let settled = solver + left_out <= tolerance && both && !several && !rungs.earlier.is_empty();
+        let settled = solver + left_out <= tolerance && both_end && !several && !rungs.earlier.is_empty();
         let limit = matches!(rungs.last.solution.outcome, Outcome::Stopped(_));
         if settled || limit {
             return finish(pose, rungs, settled, cost);
@@ -379,7 +379,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         } else if listed
             && tighter
             && rungs.too_many.is_none()
-            && (several || !both || 4.0 * solver > left_out.min(tolerance))
+            && (several || !both_end || 4.0 * solver > left_out.min(tolerance))
         {
             // the list is at its end, and the solver's error may be part of the change
             tightened += 1;

@@ -90,7 +90,7 @@ impl DroppedRod {
                 Some("mass_per_length_kg_m") => ("mass per length", by_density),
                 _ => return fault,
             };
-            follows_from(quantity, &fault, &[material, ("diameter_m", self.diameter_m)])
+            follows_from(quantity, &fault, &[material, ("diameter_m", self.diameter_m)]).unwrap_or(fault)
         })
     }
 

@@ -61,12 +61,10 @@ pub(super) fn of_product(quantity: &str, found: f64, fields: &[(&str, f64)], all
     InvalidInput::new(field, number(value), format!("{allowed}; it follows from {all}"))
 }
 
-/// The error of such a quantity as that of the most extreme of the fields.
-pub(super) fn follows_from(quantity: &str, fault: &InvalidInput, fields: &[(&str, f64)]) -> InvalidInput {
-    match fault.value {
-        Some(Value::Number(found)) if !fields.is_empty() => of_product(quantity, found, fields, &fault.allowed),
-        _ => fault.clone(),
-    }
+/// The error of such a quantity as that of the most extreme of the fields; `None` without a field or a number.
+pub(super) fn follows_from(quantity: &str, fault: &InvalidInput, fields: &[(&str, f64)]) -> Option<InvalidInput> {
+    let Some(Value::Number(found)) = fault.value else { return None };
+    (!fields.is_empty()).then(|| of_product(quantity, found, fields, &fault.allowed))
 }
 
 /// The values that a field is allowed to have so that a quantity which follows from it is allowed too: this error is that of the

@@ -90,7 +90,7 @@ impl Materials {
         let moduli = [EACH[0], EACH[2]].into_iter().zip([self.youngs_modulus_pa, self.striker_youngs_modulus_pa]);
         let given = moduli.chain([("radius_m", striker.radius_m)]);
         let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
-        let fault = follows_from(quantity, fault, &fields);
+        let fault = follows_from(quantity, fault, &fields).unwrap_or_else(|| fault.clone());
         if fault.field == "radius_m" { fault.within("striker") } else { in_contact(fault) }
     }
 }

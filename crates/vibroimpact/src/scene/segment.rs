@@ -175,7 +175,7 @@ impl Segment {
         let sizes = [("width_m", self.width_m), ("thickness_m", self.thickness_m), ("diameter_m", self.diameter_m)];
         let given = [material].into_iter().chain(sizes);
         let fields: Vec<(&str, f64)> = given.filter_map(|(field, value)| Some((field, value?))).collect();
-        (!fields.is_empty()).then(|| follows_from(quantity, fault, &fields))
+        follows_from(quantity, fault, &fields)
     }
 
     /// Shear and rotary inertia, or `None` if neither is given.
