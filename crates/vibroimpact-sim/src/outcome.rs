@@ -7,13 +7,14 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The striker left, and it is certain that the structure can never catch it again.
+    /// The striker left, and it is certain that the structure can never catch it again. Under gravity, the first flight of some height
+    /// ([`Solver::under_gravity`](crate::modal::Solver::under_gravity)).
     Rebound,
     /// The bodies never met.
     NoContact,
     /// The bodies stay in contact: the motion has decayed, or the remaining motion cannot separate them (for example a structure
-    /// that is pressed against an immovable stop). How this is decided on an infinite beam stands in
-    /// [`infinite`](crate::infinite).
+    /// that is pressed against an immovable stop). Under gravity, no flight has reached that height for a long
+    /// time. How this is decided on an infinite beam stands in [`infinite`](crate::infinite).
     Sustained,
     /// The computation stopped before the impact had ended; the solution holds what was found until then, which is valid.
     Stopped(StopReason),

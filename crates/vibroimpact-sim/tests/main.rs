@@ -12,6 +12,7 @@ mod assembly_single;
 mod common;
 mod differentiate;
 mod dropped_rod;
+mod fall;
 mod hard_infinite;
 mod hard_modal;
 mod hard_uncertainty;

@@ -8,6 +8,7 @@ use crate::in_scene::in_scene;
 use crate::model::Kept;
 use crate::same_modes::{Match, Seen, matched};
 use crate::scene::json::number;
+use crate::scene::ranges::NOT_NEGATIVE;
 use crate::scene::{
     self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, of_computed_mode,
     require_elastic,
@@ -27,6 +28,8 @@ pub struct Impact {
     pub law: Law,
     /// Motion of the structure at the start, and the distance of the striker; at rest and touching for `None`.
     pub start: Option<Start>,
+    /// Acceleration of gravity (m/s^2), if the striker falls; otherwise 0.
+    pub gravity_m_s2: f64,
     /// Accuracy and limits.
     pub settings: Settings,
 }
@@ -42,13 +45,29 @@ impl Impact {
         compliance(&self.structure.modes[self.kept_modes()..])
     }
 
+    /// Speed with which the rigid-body motions of structure and striker approach each other, or with which a falling striker would
+    /// arrive at the undeflected structure (m/s).
+    pub(crate) fn approach_m_s(&self) -> f64 {
+        let Impact { structure, striker, start, gravity_m_s2, .. } = self;
+        start.as_ref().map_or(striker.speed_m_s, |start| structure.approach_m_s(striker, start, *gravity_m_s2))
+    }
+
+    /// A solver for it.
+    pub(crate) fn solver(&self) -> Result<Solver, InvalidInput> {
+        Solver::new(&self.structure).and_then(|solver| solver.under_gravity(self.gravity_m_s2)).map_err(in_scene)
+    }
+
+    /// The same with cached tables.
+    pub(crate) fn solver_with<'k>(&self, kept: &'k mut Kept) -> Result<&'k Solver, InvalidInput> {
+        kept.solver(&self.structure, self.gravity_m_s2)
+    }
+
     /// Solves the impact.
     ///
     /// # Errors
     /// A value out of range, by its name in a scene.
     pub fn solve(&self) -> Result<Solution, InvalidInput> {
-        let solver = Solver::new(&self.structure).map_err(in_scene)?;
-        solver.solve(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
+        self.solver()?.solve(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
     /// Solves the impact and records its whole motion.
@@ -56,15 +75,14 @@ impl Impact {
     /// # Errors
     /// As [`Impact::solve`].
     pub fn record(&self) -> Result<(Solution, History<Law>), InvalidInput> {
-        let solver = Solver::new(&self.structure).map_err(in_scene)?;
-        solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
+        self.solver()?.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
     /// As [`Impact::solve`], with cached tables. The motion is returned, too, if the cache is of one scene alone.
     pub(crate) fn solve_with(&self, kept: &mut Kept) -> Result<(Solution, Option<Recording>), InvalidInput> {
-        let Impact { structure, striker, law, start, settings, .. } = self;
+        let Impact { striker, law, start, settings, .. } = self;
         if !kept.is_alone() {
-            let solver = kept.solver(structure)?;
+            let solver = self.solver_with(kept)?;
             return Ok((solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?, None));
         }
         let recording = self.keep_with(settings, kept)?;
@@ -73,7 +91,7 @@ impl Impact {
 
     fn keep_with(&self, settings: &Settings, kept: &mut Kept) -> Result<Recording, InvalidInput> {
         let settings = Settings { concurrent: kept.is_alone(), ..*settings };
-        let solver = kept.solver(&self.structure)?;
+        let solver = self.solver_with(kept)?;
         solver.solve_and_keep(&self.striker, &self.law, self.start.as_ref(), &settings).map_err(in_scene)
     }
 
@@ -220,12 +238,16 @@ impl Scene {
         let (striker, law) = self.striker_and_law(start.as_ref().map_or(0.0, |start| {
             start.rate.iter().zip(&structure.modes).map(|(rate, mode)| rate * mode.shape).sum()
         }))?;
-        Ok(Impact { structure, remainder_modes, striker, law, start, settings })
+        let gravity_m_s2 = self.gravity_m_s2;
+        Ok(Impact { structure, remainder_modes, striker, law, start, gravity_m_s2, settings })
     }
 
     /// The striker and the law of contact as input of the solvers. The point that is struck moves at `surface_m_s` towards the
     /// striker at the start.
     pub(crate) fn striker_and_law(&self, surface_m_s: f64) -> Result<(Striker, Law), InvalidInput> {
+        if !(self.gravity_m_s2 >= 0.0 && self.gravity_m_s2.is_finite()) {
+            return Err(InvalidInput::new("gravity_m_s2", number(self.gravity_m_s2), NOT_NEGATIVE));
+        }
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
         let striker = Striker { mass_kg, speed_m_s: self.striker.speed_m_s };
         Ok((striker, self.law(&self.striker, striker.speed_m_s + surface_m_s, None)?))
@@ -258,6 +280,7 @@ impl Scene {
         left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
         left_out("residual_compliance".into(), self.residual_compliance.map(|on| on.to_string()))?;
         left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        left_out("gravity_m_s2".into(), self.falls().then(|| number(self.gravity_m_s2)))?;
         let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
         let drop = rod.drop(speed_m_s).map_err(|fault| match fault.field.first() {
             Some("speed_m_s") => fault.within("striker"),
@@ -272,6 +295,7 @@ impl Scene {
         let law = self.law(&end, speed_m_s, Some(drop.law))?;
         let vibroimpact_sim::dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
         let structure = self.solvable(structure)?;
-        Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
+        let start = Some(start);
+        Ok(Impact { structure, remainder_modes, striker: surface, law, start, gravity_m_s2: 0.0, settings })
     }
 }

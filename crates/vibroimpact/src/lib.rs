@@ -60,7 +60,6 @@
 // without files some helpers of sweeps and figures are not used
 #![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
 
-mod falling;
 mod impact;
 mod in_scene;
 mod input;

@@ -6,7 +6,6 @@ use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{Scale, Solution};
 
 use crate::export::{self, Failure};
-use crate::falling::Falling;
 use crate::infinite;
 use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
@@ -58,8 +57,8 @@ pub struct ResultFile {
     pub striker_velocity_m_s: Option<f64>,
     /// Motion of a dropped rod at the end; null for everything else.
     pub rod: Option<RodMotion>,
-    /// The rebound if the striker falls on the structure; null where gravity hardly changes it, and where it is not known.
-    pub falling: Option<Falling>,
+    /// Height to which a falling striker rises above the undeflected structure (m); null without gravity.
+    pub rise_m: Option<f64>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: Option<f64>,
     /// Number of modes retained.
@@ -138,7 +137,7 @@ impl ResultFile {
             peak_forces_not_known,
             striker_velocity_m_s,
             rod,
-            falling,
+            rise_m,
             end_s,
             modes,
             remainder_modes,
@@ -169,7 +168,7 @@ impl ResultFile {
             peak_forces_not_known,
             striker_velocity_m_s: Some(striker_velocity_m_s),
             rod,
-            falling,
+            rise_m,
             end_s: Some(end_s),
             modes,
             remainder_modes,
@@ -201,7 +200,7 @@ impl ResultFile {
                 _ => answer.restitution.map(|e| e * scene.striker.speed_m_s),
             },
             rod: None,
-            falling: None,
+            rise_m: None,
             end_s: None,
             modes: answer.modes,
             remainder_modes: answer.remainder_modes,

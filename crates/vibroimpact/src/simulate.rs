@@ -3,12 +3,10 @@
 use std::f64::consts::TAU;
 
 use contact_models::Law;
-use vibroimpact_sim::both;
 use vibroimpact_sim::infinite::{self, Scale};
 use vibroimpact_sim::modal::{History, Settings, Structure};
 
 use crate::export::{self, Table};
-use crate::falling;
 use crate::impact::Impact;
 use crate::infinite as infinite_structure;
 use crate::model::{Answer, Kept, Model};
@@ -72,20 +70,16 @@ impl Scene {
                 None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
                 None => return Ok(None),
             };
-            let solution = kept.solution_on(&impact.structure);
-            let falls = solution.filter(|solution| falling::matters(&impact, solution)).cloned();
-            let fall = || falling::falling(&impact, falls.as_ref()?);
-            let (falling, recorded) = both(falls.is_some(), fall, || impact.record_with(kept));
-            let recorded = recorded?;
-            Ok(Some((impact, recorded, falling)))
+            let recorded = impact.record_with(kept)?;
+            Ok(Some((impact, recorded)))
         })?;
-        let Some((impact, (solution, history), falling)) = recorded else { return Ok(Simulation::Net(choice.answer)) };
+        let Some((impact, (solution, history))) = recorded else { return Ok(Simulation::Net(choice.answer)) };
         let rod = match &self.structure {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,
         };
         let summary = Summary::new(&solution, history.energy_ledger(), &impact).chosen(choice);
-        let summary = Summary { rod, falling, ..summary };
+        let summary = Summary { rod, ..summary };
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }
 
@@ -152,8 +146,8 @@ impl Resolved {
     pub fn until_s(&self, wanted: Option<f64>) -> f64 {
         let known_s = self.history.duration_s();
         match (self.summary.outcome, wanted) {
-            ("rebound" | "no contact", Some(wanted)) => wanted,
-            ("rebound", None) => known_s * (1.0 + AFTERMATH),
+            ("rebound" | "no contact", Some(wanted)) => wanted.min(self.history.known_until_s()),
+            ("rebound", None) => (known_s * (1.0 + AFTERMATH)).min(self.history.known_until_s()),
             ("no contact", None) => known_s.max(self.longest_period_s().unwrap_or(AT_REST_S)),
             (_, wanted) => wanted.map_or(known_s, |wanted| wanted.min(known_s)),
         }

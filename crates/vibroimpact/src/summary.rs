@@ -1,12 +1,11 @@
 //! The result of a scene for files and text.
 
-pub use crate::falling::Falling;
 use crate::impact::Impact;
 use crate::model::{Answer, Choice, Model, Uncertainty};
 use crate::stop_word::word;
 use serde::Serialize;
 use vibroimpact_sim::StopReason;
-use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
+use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Outcome, Solution, SubImpact};
 
 /// A resolved impact on a structure with modes; `simulate --json` prints a [`ResultFile`](crate::ResultFile).
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,8 +32,8 @@ pub struct Summary {
     pub striker_velocity_m_s: f64,
     /// Motion of a dropped rod at the end; null for other structures.
     pub rod: Option<RodMotion>,
-    /// The rebound if the striker falls on the structure; null where gravity hardly changes it, and where it is not known.
-    pub falling: Option<Falling>,
+    /// Height to which a falling striker rises above the undeflected structure (m); null without gravity.
+    pub rise_m: Option<f64>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,
     /// Number of modes retained.
@@ -181,7 +180,7 @@ impl Summary {
             peak_forces_not_known: Vec::new(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
             rod: None,
-            falling: None,
+            rise_m: rise_m(impact, solution),
             end_s: solution.end_s,
             modes: impact.kept_modes(),
             remainder_modes: impact.remainder_modes,
@@ -195,7 +194,7 @@ impl Summary {
                 residual_j: energy.residual_j,
                 modes_j: energy.modes_j,
                 contact_conserves: impact.law.conserves_energy()
-                    && solution.sub_impacts.iter().all(|contact| contact.end_s.is_finite()),
+                    && matches!(solution.outcome, Outcome::Rebound | Outcome::NoContact),
             },
             counts: Cost { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps },
             choice: None,
@@ -223,6 +222,12 @@ impl Summary {
             ..self
         }
     }
+}
+
+/// Height to which a falling striker rises (m).
+fn rise_m(impact: &Impact, solution: &Solution) -> Option<f64> {
+    let restitution = solution.restitution.filter(|_| impact.gravity_m_s2 > 0.0)?;
+    Some((restitution * impact.approach_m_s()).powi(2) / (2.0 * impact.gravity_m_s2))
 }
 
 /// Why parts of the uncertainty of largest forces are not known that are known of the restitution.

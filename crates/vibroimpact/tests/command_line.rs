@@ -307,7 +307,7 @@ fn wrong_types_and_unknown_fields_are_named() {
         ("/modes", json!(-4), "modes = -4"),
         ("/residual_compliance", json!(1), "residual_compliance = 1"),
         ("/start", json!(3), "start = 3"),
-        ("/gravity_m_s2", json!(9.81), "gravity_m_s2 = 9.81"),
+        ("/friction", json!(0.3), "friction = 0.3"),
         ("/structure/segments/1/lenght_m", json!(1), "structure.segments[1].lenght_m = 1"),
     ] {
         let scene = if pointer == "/structure/segments/1" {

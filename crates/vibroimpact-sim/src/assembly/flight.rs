@@ -12,6 +12,9 @@ impl<'a> March<'a> {
     /// Makes a step of free flight; `true` if the bodies have separated for good and no step is needed.
     pub(super) fn fly(&mut self) -> bool {
         self.counts.flight_steps += 1;
+        if self.time_s >= self.turns_at_s {
+            return self.go_back_to_separation();
+        }
         let lasting = self.lasting();
         let mut go = f64::INFINITY;
         for c in 0..self.states.len() {
@@ -22,9 +25,7 @@ impl<'a> March<'a> {
             go = go.min(self.clear_until(c) - self.time_s);
         }
         if go == f64::INFINITY && self.settings.stop_when_over && self.loads.is_empty() {
-            self.look_for_misses();
-            (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
-            return true;
+            return self.go_back_to_separation();
         }
         let steps = self.tables.steps;
         let near = steps.level_within(self.reach);
@@ -65,6 +66,13 @@ impl<'a> March<'a> {
             }
         }
         false
+    }
+
+    /// Ends the run at the last separation.
+    fn go_back_to_separation(&mut self) -> bool {
+        self.look_for_misses();
+        (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
+        true
     }
 
     pub(super) fn rotate(&mut self, level: i32) {

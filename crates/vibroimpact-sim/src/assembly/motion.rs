@@ -67,6 +67,8 @@ pub(crate) struct March<'a> {
     pub(super) misses: Option<Misses>,
     /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
+    /// Time at which the present flight ends the run, if no contact closes before (s); infinite if it does not.
+    pub(super) turns_at_s: f64,
     /// Memory for the enclosures, and for Newton's method.
     pub(super) contact_forces: Vec<ContactForce<'a>>,
     pub(super) quasi_static: QuasiStatic,
@@ -144,6 +146,7 @@ impl<'a> March<'a> {
             pending: Vec::new(),
             misses: None,
             departure: (0.0, Vec::new(), Vec::new()),
+            turns_at_s: f64::INFINITY,
             contact_forces: Vec::new(),
             quasi_static: QuasiStatic::default(),
             newton: Newton::default(),
@@ -185,13 +188,13 @@ impl<'a> March<'a> {
         (self.time_s, &self.amplitude, &self.rate)
     }
 
-    /// Time until the loads change, statistics begin or the run ends (s).
+    /// Time until the loads change, statistics begin, a side turns round with which the run ends, or the run ends anyway (s).
     pub(super) fn lasting(&self) -> f64 {
         (self.next_stop_s() - self.time_s).max(0.0)
     }
 
     fn next_stop_s(&self) -> f64 {
-        self.settings.end_s.min(self.loads.next_break_s()).min(self.statistics_from_s)
+        self.settings.end_s.min(self.loads.next_break_s()).min(self.statistics_from_s).min(self.turns_at_s)
     }
 
     pub(super) fn law(&self, c: usize) -> &'a dyn ContactLaw {

@@ -146,6 +146,10 @@ pub struct Settings {
     /// at the time at which the last one opened, or, as at rest, once the energy of the remaining motion is below the error that
     /// the tolerance allows for a contact. Default false.
     pub stop_when_over: bool,
+    /// With that, one contact, and constant loads that press its first side onto the second, as a ball is by its weight: end the run in
+    /// the same way at the first separation after which this side turns round where it is displaced by more than this (m), which
+    /// may be negative. Default infinity.
+    pub over_above_m: f64,
     /// Rest is not checked before this time (s). Default 0.
     pub rest_from_s: f64,
     /// Statistics of the contacts cover the motion from this time on (s), less than `end_s`. Default 0, the whole run.
@@ -162,6 +166,7 @@ impl Settings {
             max_intervals: 100_000_000,
             stop_at_rest: true,
             stop_when_over: false,
+            over_above_m: f64::INFINITY,
             rest_from_s: 0.0,
             statistics_from_s: 0.0,
         }
@@ -178,6 +183,7 @@ impl Settings {
             self.rest_from_s,
             "0 or a positive number of seconds, and at most 1e30",
         )?;
+        InvalidInput::unless(!self.over_above_m.is_nan(), "over_above_m", self.over_above_m, "a number, or infinity")?;
         let before_end = self.statistics_from_s >= 0.0 && self.statistics_from_s < self.end_s;
         let allowed = "0 or a positive number of seconds, and less than end_s";
         InvalidInput::unless(before_end, "statistics_from_s", self.statistics_from_s, allowed)?;

@@ -99,6 +99,7 @@ impl<'a> March<'a> {
     pub(super) fn close(&mut self, c: usize, beyond: f64) {
         let law = self.law(c);
         let Phase::Open { memory, .. } = self.states[c].phase else { return };
+        self.turns_at_s = f64::INFINITY;
         let (overlap, _) = self.overlap_of_modes(c);
         let state = &mut self.states[c];
         state.overlap = memory.touch_m + beyond;
@@ -243,6 +244,7 @@ impl<'a> March<'a> {
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.discard_predictions();
                 self.depart();
+                self.turns_at_s = self.turns_at_s();
                 self.event(c, Event::Cross(crossing.boundary));
             }
         }
@@ -255,6 +257,18 @@ impl<'a> March<'a> {
             self.departure.1.clone_from(&self.amplitude);
             self.departure.2.clone_from(&self.rate);
         }
+    }
+
+    /// Time at which the first side of the only contact turns round, if it is displaced by enough then for the run to end (s).
+    fn turns_at_s(&self) -> f64 {
+        let level = self.settings.over_above_m;
+        let [link] = &self.system.links[..] else { return f64::INFINITY };
+        let Some(side) = link.sides[0].as_ref().filter(|_| level < f64::INFINITY) else { return f64::INFINITY };
+        let (shift, shift_rate) = self.loads.side(self.system, side, self.time_s);
+        let (displacement, rate) = (side.sum(&self.amplitude) + shift, side.sum(&self.rate) + shift_rate);
+        let pressed = self.loads.acceleration(0, self.time_s);
+        let turns = rate > 0.0 && pressed > 0.0 && displacement + rate * rate / (2.0 * pressed) > level;
+        if turns { self.time_s + rate / pressed } else { f64::INFINITY }
     }
 
     fn event(&mut self, c: usize, event: Event) {

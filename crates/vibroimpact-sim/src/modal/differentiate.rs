@@ -149,7 +149,7 @@ impl Solver {
     /// ```
     ///
     /// # Errors
-    /// As [`Solver::solve`], and for neighbours with another number of modes.
+    /// As [`Solver::solve`], for neighbours with another number of modes, and under gravity.
     pub fn differentiate(
         &self,
         striker: &Striker,
@@ -158,7 +158,8 @@ impl Solver {
         settings: &Settings,
         parameters: &[Parameter],
     ) -> Result<Differentiated, InvalidInput> {
-        let count = self.modes().len();
+        let (count, gravity_m_s2) = (self.modes().len(), self.gravity_m_s2());
+        InvalidInput::unless(gravity_m_s2 == 0.0, "gravity_m_s2", gravity_m_s2, "0 for derivatives")?;
         for (i, parameter) in parameters.iter().enumerate() {
             check_offsets(i, &parameter.offsets)?;
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
@@ -176,13 +177,13 @@ impl Solver {
         let moved = self.moved_by(parameters, start);
         let other = (moved != self.moved()).then(|| self.moving(moved));
         let at_rest = Start::at_rest(count);
-        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
+        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings, fall: None };
         other.as_ref().unwrap_or(self).along_all(&impact, parameters)
     }
 
     /// The impact at its tolerance and in other steps at a coarser one, differentiated along both.
     fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
-        let Impact { striker, law, start, settings } = *impact;
+        let Impact { striker, law, start, settings, .. } = *impact;
         let Solved { solution, run: fine, coarser, .. } =
             self.solve_into(striker, law, Some(start), settings, Keep::NearestMiss)?;
         let none = |solution, why| {

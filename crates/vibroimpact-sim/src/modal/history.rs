@@ -1,5 +1,6 @@
 //! The record of an impact: motion and force at any time, and the energy balance.
 
+use super::fall::Fall;
 use super::problem::{Mode, Start, Striker};
 use super::pulse::{self, Pulse};
 use super::solution::{Outcome, Solution};
@@ -40,9 +41,10 @@ impl Sample {
 /// The energy balance (J).
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyLedger {
-    /// Kinetic energy of the striker and energy of the structure at the start.
+    /// Energy of the striker and of the structure at the start. That of the striker is kinetic and, under gravity, potential, from the
+    /// height at which it touches the undeflected structure.
     pub initial_j: f64,
-    /// Kinetic energy of the striker at the end.
+    /// Energy of the striker at the end.
     pub striker_j: f64,
     /// Energy of each mode at the end, in the order of `Structure::modes`.
     pub modes_j: Vec<f64>,
@@ -60,7 +62,6 @@ pub struct EnergyLedger {
 pub struct History<L> {
     recorded: Recorded,
     law: L,
-    loads: Loads,
     end_s: f64,
     /// Time up to which the motion is known (s).
     known_until_s: f64,
@@ -75,7 +76,9 @@ pub(crate) struct Recorded {
     pub moved: Vec<usize>,
     pub striker: Striker,
     pub start: Start,
+    pub fall: Option<Fall>,
     pub system: System,
+    pub loads: Loads,
     pub stretches: Vec<Stretch>,
 }
 
@@ -84,14 +87,14 @@ impl<L: ContactLaw> History<L> {
     pub(crate) fn new(recorded: Recorded, law: L, solution: &Solution, work_and_damping_j: [f64; 2]) -> History<L> {
         History {
             ledger: recorded.ledger(solution, work_and_damping_j),
-            loads: Loads::new(&[], &recorded.system),
+            known_until_s: match (solution.outcome, recorded.fall) {
+                (Outcome::Rebound, Some(fall)) => solution.end_s + fall.rises_for_s(solution.striker_velocity_m_s),
+                (Outcome::Rebound | Outcome::NoContact, None) => f64::INFINITY,
+                _ => solution.end_s,
+            },
             recorded,
             law,
             end_s: solution.end_s,
-            known_until_s: match solution.outcome {
-                Outcome::Rebound | Outcome::NoContact => f64::INFINITY,
-                _ => solution.end_s,
-            },
         }
     }
 
@@ -101,7 +104,7 @@ impl<L: ContactLaw> History<L> {
     }
 
     /// Time (s) up to which the motion is known. Later times are treated as this one. It is infinite after a rebound, which is
-    /// followed by free motion. A sustained contact is computed at least up to [`Settings::until_s`](super::Settings).
+    /// followed by free motion; under gravity, it is the time at which the rebound is highest. A sustained contact is computed at least up to [`Settings::until_s`](super::Settings).
     pub fn known_until_s(&self) -> f64 {
         self.known_until_s
     }
@@ -149,6 +152,12 @@ impl<L: ContactLaw> History<L> {
         Pulse { from_s, panels: panels.collect() }
     }
 
+    /// Energy of the striker at `time_s` (J), as in the [`EnergyLedger`].
+    pub fn striker_energy_j(&self, time_s: f64) -> f64 {
+        let Sample { striker_displacement_m, striker_velocity_m_s, .. } = self.at(time_s);
+        self.recorded.striker_j(striker_displacement_m, striker_velocity_m_s)
+    }
+
     /// Energy of each mode at `time_s` (J), in the order of `Structure::modes`.
     pub fn modal_energies_j(&self, time_s: f64) -> Vec<f64> {
         let (amplitude, rate) = self.motion(time_s);
@@ -178,21 +187,27 @@ impl<L: ContactLaw> History<L> {
         let stretches = &self.recorded.stretches;
         let after = stretches.partition_point(|stretch| stretch.start_s <= time_s);
         let stretch = &stretches[after.saturating_sub(1)];
-        let (system, loads) = (&self.recorded.system, &self.loads);
+        let Recorded { system, loads, .. } = &self.recorded;
         (Panel { system, loads, laws, stretch }, (time_s - stretch.start_s).min(stretch.length_s))
     }
 }
 
 impl Recorded {
+    /// Energy of the striker with this displacement and velocity; 0 for a stop.
+    fn striker_j(&self, displacement_m: f64, velocity_m_s: f64) -> f64 {
+        let mass_kg = self.striker.mass_kg;
+        let kinetic_j = if mass_kg.is_finite() { 0.5 * mass_kg * velocity_m_s * velocity_m_s } else { 0.0 };
+        kinetic_j + self.fall.map_or(0.0, |fall| fall.potential_j(displacement_m))
+    }
+
     fn ledger(&self, end: &Solution, [contact_j, damping_j]: [f64; 2]) -> EnergyLedger {
         let mass_kg = self.striker.mass_kg;
-        let kinetic = |speed: f64| if mass_kg.is_finite() { 0.5 * mass_kg * speed * speed } else { 0.0 };
         let before = energies(&self.modes, &self.start.amplitude, &self.start.rate);
         let modes_j = energies(&self.modes, &end.amplitude, &end.rate);
         let elastic = |k: &usize| !self.modes[*k].is_rigid() && self.moved.binary_search(k).is_err();
         let unmoved: f64 = (0..self.modes.len()).filter(elastic).map(|k| before[k] - modes_j[k]).sum();
-        let initial_j = kinetic(self.striker.speed_m_s) + before.iter().sum::<f64>();
-        let striker_j = kinetic(end.striker_velocity_m_s);
+        let initial_j = self.striker_j(0.0, self.striker.speed_m_s) + before.iter().sum::<f64>();
+        let striker_j = self.striker_j(end.striker_displacement_m, end.striker_velocity_m_s);
         let modal_damping_j = damping_j + unmoved;
         // a stop that moves does work
         let impulse: f64 = end.sub_impacts.iter().map(|contact| contact.impulse_n_s).sum();

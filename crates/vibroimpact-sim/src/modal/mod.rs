@@ -34,6 +34,7 @@
 //! steps of the first, is then computed, and its difference counts twice.
 
 mod differentiate;
+mod fall;
 mod history;
 mod posed;
 pub(crate) mod problem;

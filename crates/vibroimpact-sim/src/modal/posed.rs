@@ -1,6 +1,6 @@
 //! An impact as an assembly: the structure is one body, the striker another, and they share one contact.
 
-use super::problem::{Mode, Start, Striker};
+use super::problem::{Mode, Start, Striker, height_m};
 use crate::assembly::{Assembly, Body, Contact, Point};
 
 /// Mass of a moving stop relative to the structure, so large that no contact slows it down.
@@ -28,7 +28,6 @@ pub(crate) fn weight(striker: &Striker, modes: &[Mode]) -> f64 {
 pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start: &Start) -> Assembly<()> {
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
     let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();
-    let deflection: f64 = moved.iter().map(|k| modes[*k].shape * start.amplitude[*k]).sum();
     let structure = Body {
         modes: moved.iter().map(|k| modes[*k].of_body()).collect(),
         amplitude: pick(&start.amplitude),
@@ -42,6 +41,6 @@ pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start
         None => (vec![structure], Point::Ground),
     };
     let sides = [side, Point::OfBody { body: STRUCTURE, shape }];
-    let contacts = vec![Contact { sides, gap_m: start.gap_m + deflection, law: () }];
+    let contacts = vec![Contact { sides, gap_m: height_m(modes, start), law: () }];
     Assembly { bodies, contacts, loads: Vec::new() }
 }

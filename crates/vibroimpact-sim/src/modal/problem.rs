@@ -6,7 +6,7 @@ use beam_modes::PointMode;
 use invalid_input::InvalidInput;
 
 /// The least mass (kg), the reciprocal of the largest: wide enough for any unit system, narrow enough that no product overflows.
-const SCALE_MIN: f64 = 1e-30;
+pub(super) const SCALE_MIN: f64 = 1e-30;
 /// The least speed of approach (m/s): energies of slower motions are lost to underflow, and with them the proof that the impact is
 /// over.
 pub(super) const SPEED_MIN: f64 = 1e-60;
@@ -81,6 +81,17 @@ pub(crate) fn approach(modes: &[Mode], striker: &Striker, start: &Start) -> f64 
     striker.speed_m_s + rigid_motion(modes, &start.rate)
 }
 
+/// Height of the striker above the undeflected structure at the start (m).
+pub(crate) fn height_m(modes: &[Mode], start: &Start) -> f64 {
+    let deflection: f64 = modes.iter().zip(&start.amplitude).map(|(mode, amplitude)| mode.shape * amplitude).sum();
+    start.gap_m + deflection
+}
+
+/// Speed with which a striker would arrive at the undeflected structure, from its speed and height (m/s).
+pub(crate) fn arrives_m_s(gravity_m_s2: f64, speed_m_s: f64, height_m: f64) -> f64 {
+    (speed_m_s.powi(2) + 2.0 * gravity_m_s2 * height_m).max(0.0).sqrt()
+}
+
 /// A linear structure, as seen from the contact. Truncated modes are best represented by remainder modes
 /// ([`beam_modes::remainder_modes`]), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -114,9 +125,14 @@ impl Structure {
         mobility(&self.modes, striker)
     }
 
-    /// Velocity with which these motions approach each other (m/s).
-    pub fn approach_m_s(&self, striker: &Striker, start: &Start) -> f64 {
-        approach(&self.modes, striker, start)
+    /// Velocity with which these motions approach each other (m/s). Under gravity (m/s^2) it is that with which the striker would arrive
+    /// at the undeflected structure.
+    pub fn approach_m_s(&self, striker: &Striker, start: &Start, gravity_m_s2: f64) -> f64 {
+        if gravity_m_s2 == 0.0 {
+            approach(&self.modes, striker, start)
+        } else {
+            arrives_m_s(gravity_m_s2, striker.speed_m_s, height_m(&self.modes, start))
+        }
     }
 
     /// Checks that every number lies in the range of the solver.

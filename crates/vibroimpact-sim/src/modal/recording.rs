@@ -1,5 +1,6 @@
 //! A solved impact with its motion, panel by panel.
 
+use super::fall::Fall;
 use super::history::{History, Recorded};
 use super::problem::{Mode, Start, Striker};
 use super::solution::{Counts, Solution};
@@ -24,7 +25,9 @@ pub struct Recording {
     pub(crate) moved: Vec<usize>,
     pub(crate) striker: Striker,
     pub(crate) start: Start,
+    pub(crate) fall: Option<Fall>,
     pub(crate) system: System,
+    pub(crate) loads: Loads,
     pub(crate) record: Record,
     pub(crate) tables: Arc<Tables>,
     /// Work of the contact and loss by damping, if they are already known (J).
@@ -51,24 +54,35 @@ impl Recording {
     /// The history, for the law with which the impact was solved.
     pub fn history<L: ContactLaw>(self, law: L) -> (Solution, History<L>) {
         let Recording {
-            solution, modes, moved, striker, start, system, record, tables, work_and_damping_j: known, ..
+            solution,
+            modes,
+            moved,
+            striker,
+            start,
+            fall,
+            system,
+            loads,
+            record,
+            tables,
+            work_and_damping_j: known,
+            ..
         } = self;
-        let work_and_damping_j = known.unwrap_or_else(|| work_and_damping_j(&system, &record, &tables));
-        let recorded = Recorded { modes, moved, striker, start, system, stretches: record.stretches };
+        let work_and_damping_j = known.unwrap_or_else(|| work_and_damping_j(&system, &loads, &record, &tables));
+        let stretches = record.stretches;
+        let recorded = Recorded { modes, moved, striker, start, fall, system, loads, stretches };
         let history = History::new(recorded, law, &solution, work_and_damping_j);
         (solution, history)
     }
 }
 
 /// Work of the contact, and energy that the moved modes lose to damping (J).
-pub(crate) fn work_and_damping_j(system: &System, record: &Record, tables: &Tables) -> [f64; 2] {
-    let loads = Loads::new(&[], system);
+pub(crate) fn work_and_damping_j(system: &System, loads: &Loads, record: &Record, tables: &Tables) -> [f64; 2] {
     let mut dissipation = Dissipation::new(system);
     let mut work_j = Sum::default();
     work_j += record.contact_work_j;
     for stretch in &record.stretches {
         let Stretch { start_s, length_s, amplitude, rate, forces, .. } = stretch;
-        let start = Moment { system, loads: &loads, time_s: *start_s, amplitude, rate };
+        let start = Moment { system, loads, time_s: *start_s, amplitude, rate };
         // the end of the record is the start of its last stretch
         dissipation.land(&start);
         let (contacts, force): (Vec<usize>, Vec<Legendre>) = forces.iter().map(|of| (of.contact, of.force)).unzip();

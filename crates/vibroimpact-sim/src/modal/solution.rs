@@ -54,7 +54,9 @@ pub struct Solution {
     pub counts: Counts,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,
-    /// Velocity of the striker at `end_s`, positive away from the structure (m/s).
+    /// Displacement of the striker at `end_s`, positive away from the structure (m).
+    pub striker_displacement_m: f64,
+    /// Its velocity then (m/s).
     pub striker_velocity_m_s: f64,
     /// Modal amplitudes at `end_s` (m kg^1/2).
     pub amplitude: Vec<f64>,

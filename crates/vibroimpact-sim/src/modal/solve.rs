@@ -1,11 +1,13 @@
 //! Solves an impact from first touch until it is certain that the bodies never meet again.
 
+use super::fall::{Fall, check_gravity};
 use super::history::{History, all_modes};
 use super::posed;
 use super::problem::{Mode, SPEED_MIN, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::recording::{Recording, work_and_damping_j};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use crate::StopReason;
+use crate::assembly::load::Loads;
 use crate::assembly::responses::Responses;
 use crate::assembly::solve::{Keep, follow};
 use crate::assembly::system::System;
@@ -60,6 +62,7 @@ const LEAST: f64 = 2.5e-3;
 /// ```
 pub struct Solver {
     modes: Vec<Mode>,
+    gravity_m_s2: f64,
     /// Indices of the modes that are solved for: those that the contact excites. The others move freely.
     moved: Vec<usize>,
     /// Tables for each of the solutions, with a striker and with a stop at rest, which adds no mode.
@@ -75,6 +78,7 @@ pub(crate) struct Impact<'a> {
     pub law: &'a dyn ContactLaw,
     pub start: &'a Start,
     pub settings: &'a Settings,
+    pub fall: Option<Fall>,
 }
 
 /// An impact as an assembly, for all runs of it.
@@ -88,6 +92,7 @@ pub(crate) struct Run {
     pub outcome: Outcome,
     end_s: f64,
     sub_impacts: Vec<SubImpact>,
+    striker_displacement_m: f64,
     striker_velocity_m_s: f64,
     amplitude: Vec<f64>,
     rate: Vec<f64>,
@@ -101,7 +106,8 @@ pub(crate) struct Solved {
     pub run: Run,
     /// The first of the coarser solutions, with its motion if the nearest miss is kept; `None` if no uncertainty was requested.
     pub coarser: Option<Run>,
-    system: System,
+    lowered: Lowered,
+    fall: Option<Fall>,
     /// Work of the contact and loss by damping in the run, if computed while coarser problems were solved in another thread (J).
     work_and_damping_j: Option<[f64; 2]>,
 }
@@ -144,6 +150,38 @@ impl Solver {
         Ok(Solver::of(structure.modes.clone(), moved(&structure.modes, None)))
     }
 
+    /// The same for strikers that fall on the structure, in the direction of their speed. Each impact ends with the first flight that
+    /// rises above the undeflected structure by more than a hundredth of the height of the fall. The restitution is that of a drop test:
+    /// the speed that belongs to the height of this rebound, over the speed of impact. It is 0, and the contact sustained, if there is no
+    /// such flight within `8 v/g`. 0 leaves gravity out, as by default.
+    ///
+    /// # Errors
+    /// If the acceleration of gravity (m/s^2) is neither 0 nor from 1e-30 to 1e30. An impact under gravity is refused if the striker is
+    /// an immovable stop or does not fall, or if the structure has a rigid-body mode and would fall as well.
+    ///
+    /// ```
+    /// use contact_models::Hertz;
+    /// use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+    ///
+    /// // a ball of 0.1 kg on a soft beam, which throws it up slowly
+    /// let structure = Structure { modes: vec![Mode { omega_rad_s: 20.0, damping_ratio: 0.02, shape: 3.0 }] };
+    /// let (ball, law) = (Striker { mass_kg: 0.1, speed_m_s: 1.0 }, Hertz::new(1e9).unwrap());
+    /// let restitution = |gravity_m_s2| {
+    ///     let solver = Solver::new(&structure)?.under_gravity(gravity_m_s2)?;
+    ///     Ok::<_, vibroimpact_sim::InvalidInput>(solver.solve(&ball, &law, None, &Settings::default())?.restitution)
+    /// };
+    /// assert!(restitution(0.0)?.unwrap() != restitution(9.81)?.unwrap());
+    /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
+    /// ```
+    pub fn under_gravity(self, gravity_m_s2: f64) -> Result<Solver, InvalidInput> {
+        check_gravity(gravity_m_s2)?;
+        Ok(if gravity_m_s2 == self.gravity_m_s2 {
+            self
+        } else {
+            Solver { gravity_m_s2, whole: OnceLock::new(), ..self }
+        })
+    }
+
     /// Turns to another location of the same structure, or to a structure of other modes. Tables that do not depend on the
     /// shapes are kept where frequencies and damping are the same; results are those of a new solver, to the last bit.
     ///
@@ -173,7 +211,7 @@ impl Solver {
     }
 
     fn of(modes: Vec<Mode>, moved: Vec<usize>) -> Solver {
-        Solver { moved, modes, tables: Default::default(), whole: OnceLock::new() }
+        Solver { moved, modes, gravity_m_s2: 0.0, tables: Default::default(), whole: OnceLock::new() }
     }
 
     /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
@@ -203,8 +241,9 @@ impl Solver {
     ) -> Result<Recording, InvalidInput> {
         let solver = self.starting(start);
         let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
-        let Solved { solution, run, system, work_and_damping_j, .. } =
+        let Solved { solution, run, lowered, fall, work_and_damping_j, .. } =
             solver.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
+        let loads = Loads::new(&lowered.assembly.loads, &lowered.system);
         Ok(Recording {
             solution,
             counts: run.counts,
@@ -213,9 +252,11 @@ impl Solver {
             striker: *striker,
             start,
             record: run.record,
-            tables: Arc::clone(solver.tables(&system, ANSWER)),
+            tables: Arc::clone(solver.tables(&lowered.system, ANSWER)),
             work_and_damping_j,
-            system,
+            fall,
+            loads,
+            system: lowered.system,
         })
     }
 
@@ -259,15 +300,17 @@ impl Solver {
             "finite, because no mode of the structure moves at the contact",
         )?;
 
-        let impact = Impact { striker, law, start, settings };
+        let fall = Fall::new(self.gravity_m_s2, &self.modes, striker, start)?;
+        let impact = Impact { striker, law, start, settings, fall };
         let (lowered, mut responses) = (self.lower(&impact), Responses::default());
         let Settings { estimate_uncertainty, concurrent, .. } = *settings;
         let mut solve = |factor: f64, keep| self.run(&impact, &lowered, (ANSWER, &mut responses), factor, keep);
         let (mut beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
             let solve_and_book = || {
                 let run = solve(1.0, keep);
-                let system = &lowered.system;
-                let book = || work_and_damping_j(system, &run.record, self.tables(system, ANSWER));
+                let Lowered { assembly, system } = &lowered;
+                let loads = || Loads::new(&assembly.loads, system);
+                let book = || work_and_damping_j(system, &loads(), &run.record, self.tables(system, ANSWER));
                 let booked = (keep == Keep::Motion).then(book);
                 (run, booked)
             };
@@ -277,7 +320,7 @@ impl Solver {
             (None, solve(1.0, keep), None)
         };
         let mut counts = run.counts;
-        let restitution = self.restitution(&run, striker, start);
+        let restitution = self.restitution(&run, &impact);
         let known = if estimate_uncertainty { self.restitutions(&run, &impact) } else { None };
         let restitution_uncertainty = known.and_then(|known| {
             let coarser = beside.get_or_insert_with(|| self.coarser(&impact, &lowered, keep));
@@ -291,12 +334,13 @@ impl Solver {
             sub_impacts: std::mem::take(&mut run.sub_impacts),
             counts,
             end_s: run.end_s,
+            striker_displacement_m: run.striker_displacement_m,
             striker_velocity_m_s: run.striker_velocity_m_s,
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };
         let coarser = beside.into_iter().flatten().next().map(|(run, _)| run);
-        Ok(Solved { solution, run, coarser, system: lowered.system, work_and_damping_j })
+        Ok(Solved { solution, run, coarser, lowered, fall, work_and_damping_j })
     }
 
     /// Coarser solutions of the same impact in other steps, up to the first without a restitution. The motion of the first is kept
@@ -375,9 +419,13 @@ impl Solver {
         &self.modes
     }
 
+    pub(crate) fn gravity_m_s2(&self) -> f64 {
+        self.gravity_m_s2
+    }
+
     /// The same structure, in which these modes are moved by the contact.
     pub(crate) fn moving(&self, moved: Vec<usize>) -> Solver {
-        Solver::of(self.modes.clone(), moved)
+        Solver { gravity_m_s2: self.gravity_m_s2, ..Solver::of(self.modes.clone(), moved) }
     }
 
     pub(crate) fn moved(&self) -> &[usize] {
@@ -385,7 +433,8 @@ impl Solver {
     }
 
     pub(crate) fn lower(&self, impact: &Impact) -> Lowered {
-        let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
+        let mut assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
+        assembly.loads.extend(impact.fall.as_ref().map(Fall::weight));
         let system = System::new(&assembly.with_laws(Vec::new()));
         Lowered { assembly, system }
     }
@@ -399,16 +448,17 @@ impl Solver {
         factor: f64,
         keep: Keep,
     ) -> Run {
-        let Impact { law, start, settings, .. } = *impact;
+        let Impact { law, start, settings, fall, .. } = *impact;
         let Lowered { assembly, system } = lowered;
         let posed = assembly.with_laws(vec![law]);
         let wanted = assembly::Settings {
-            end_s: f64::INFINITY,
+            end_s: fall.map_or(f64::INFINITY, |fall| fall.end_s()),
             tolerance: (factor * settings.tolerance.min(LOOSEST)).min(0.1),
             max_steps: settings.max_steps,
             max_intervals: settings.max_sub_impacts as u64,
             stop_at_rest: true,
             stop_when_over: true,
+            over_above_m: fall.map_or(f64::INFINITY, |fall| fall.rebound_above_m()),
             rest_from_s: if keep == Keep::Result { 0.0 } else { settings.until_s },
             statistics_from_s: 0.0,
         };
@@ -437,6 +487,7 @@ impl Solver {
             outcome,
             end_s: run.end_s,
             sub_impacts: intervals.iter().map(of).collect(),
+            striker_displacement_m: run.contacts[0].displacement_m[0],
             striker_velocity_m_s: run.contacts[0].velocity_m_s[0],
             amplitude,
             rate,
@@ -445,23 +496,34 @@ impl Solver {
         }
     }
 
-    fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
-        let before = approach(&self.modes, striker, start);
-        let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
+    fn restitution(&self, run: &Run, impact: &Impact) -> Option<f64> {
+        let Impact { striker, fall, .. } = *impact;
+        let before = self.approach_m_s(impact);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_moved());
-        let separation = match run.outcome {
+        let known = before >= SPEED_MIN && free;
+        match (run.outcome, fall) {
             // the bodies stay together, whatever is left of their motion
-            Outcome::Sustained => 0.0,
-            _ => run.striker_velocity_m_s - rigid_motion(&self.modes, &run.rate),
-        };
-        (ended && before >= SPEED_MIN && free).then(|| separation / before)
+            (Outcome::Sustained, _) => known.then_some(0.0),
+            (Outcome::Rebound, Some(fall)) => {
+                Some(fall.restitution(run.striker_displacement_m, run.striker_velocity_m_s))
+            }
+            (Outcome::Rebound, None) => {
+                let separation = run.striker_velocity_m_s - rigid_motion(&self.modes, &run.rate);
+                known.then(|| separation / before)
+            }
+            _ => None,
+        }
+    }
+
+    /// Speed with which the bodies meet.
+    fn approach_m_s(&self, impact: &Impact) -> f64 {
+        impact.fall.map_or_else(|| approach(&self.modes, impact.striker, impact.start), |fall| fall.arrives_m_s())
     }
 
     /// The restitution of a run, with those that an end after each contact would have had.
     fn restitutions(&self, run: &Run, impact: &Impact) -> Option<Restitutions> {
-        let Impact { striker, start, .. } = *impact;
-        let last = self.restitution(run, striker, start)?;
-        let (mobility, approach) = (mobility(&self.modes, striker), approach(&self.modes, striker, start));
+        let last = self.restitution(run, impact)?;
+        let (mobility, approach) = (mobility(&self.modes, impact.striker), self.approach_m_s(impact));
         let mut impulse_n_s = 0.0;
         let after = |contact: &SubImpact| {
             impulse_n_s += contact.impulse_n_s;

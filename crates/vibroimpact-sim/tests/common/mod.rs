@@ -142,6 +142,7 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
 
 /// The result of the second method.
 pub struct Found {
+    pub displacement_m: f64,
     pub velocity_m_s: f64,
     /// Starts of contacts (s).
     pub touches_s: Vec<f64>,
@@ -157,6 +158,18 @@ pub fn second_method(
     end_s: f64,
     tolerance: f64,
 ) -> Found {
+    second_method_under(0.0, structure, striker, law, end_s, tolerance)
+}
+
+/// The same with gravity on the striker (m/s^2).
+pub fn second_method_under(
+    gravity_m_s2: f64,
+    structure: &Structure,
+    striker: &Striker,
+    law: &dyn ContactLaw,
+    end_s: f64,
+    tolerance: f64,
+) -> Found {
     let n = structure.modes.len();
     // Compression and its rate.
     let seen = |y: &[f64]| {
@@ -166,7 +179,7 @@ pub fn second_method(
     let slope = |branch: Option<&Branch>, y: &[f64], dy: &mut [f64]| {
         let (xi, rate) = seen(y);
         let force = branch.map_or(0.0, |branch| law.force(branch, xi, rate).force_n);
-        (dy[0], dy[1]) = (y[1], force / striker.mass_kg);
+        (dy[0], dy[1]) = (y[1], force / striker.mass_kg - gravity_m_s2);
         for (k, mode) in structure.modes.iter().enumerate() {
             let (a, v) = (y[2 + 2 * k], y[3 + 2 * k]);
             dy[2 + 2 * k] = v;
@@ -209,7 +222,7 @@ pub fn second_method(
             },
         };
     }
-    Found { velocity_m_s: y[1], touches_s }
+    Found { displacement_m: y[0], velocity_m_s: y[1], touches_s }
 }
 
 /// Integrates `y' = f(t, y)` between these times, with a given first step, by an adaptive Dormand-Prince 5(4) pair: the error

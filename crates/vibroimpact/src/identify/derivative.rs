@@ -107,8 +107,8 @@ fn tangent(
             changes_law: near.iter().any(|impact| impact.law != here.law),
         })
         .collect();
-    let Impact { striker, law, start, settings, structure, .. } = &here;
-    let solver = kept.solver(structure).ok()?;
+    let Impact { striker, law, start, settings, .. } = &here;
+    let solver = here.solver_with(kept).ok()?;
     let found = solver.differentiate(striker, law, start.as_ref(), settings, &by).ok()?;
     let changes: Vec<solver::Derivatives> = found.derivatives.into_iter().collect::<Result<_, _>>().ok()?;
     let columns = |(quantity, ..): &(Quantity, f64, Option<f64>)| {

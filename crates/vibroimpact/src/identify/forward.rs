@@ -264,7 +264,7 @@ impl<'a> Model<'a> {
 
     fn resolve(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Result<Course, InvalidInput> {
         let impact = self.impact(row, parameters, kept)?;
-        let solver = kept.solver(&impact.structure)?;
+        let solver = impact.solver_with(kept)?;
         let Impact { striker, law, start, settings, .. } = &impact;
         if row.force.is_none() {
             let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?;

@@ -99,6 +99,7 @@ impl Scene {
         left_out(["striker", "immovable"].into(), self.striker.immovable.then(|| "true".to_owned()))?;
         left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
         left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
+        left_out("gravity_m_s2".into(), self.falls().then(|| number(self.gravity_m_s2)))?;
         left_out("tolerance".into(), self.tolerance.map(number))?;
         let (striker, law) = self.striker_and_law(0.0)?;
         // of Hertz contact the stiffness is a part of the impact; otherwise it does not enter

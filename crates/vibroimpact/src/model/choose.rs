@@ -171,12 +171,28 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {
         return stated::stated(pose.scene, pose.kept, cost);
     }
-    for tier in [rigid::certified, super::emoc::certified, infinite::certified] {
-        if let Ok(choice) = tier(pose, cost)? {
+    for model in CHEAPER {
+        if let Ok(choice) = certified_tier(model, pose, cost)? {
             return Ok(choice);
         }
     }
     modal(pose, cost)
+}
+
+/// The models that cost less than the modal one, the cheapest first.
+pub(super) const CHEAPER: [Model; 3] = [Model::Rigid, Model::Emoc, Model::InfiniteBeam];
+/// Why none of them is available for a striker that falls.
+const FALLS: &str = "gravity_m_s2 is stated, and this model leaves gravity out";
+
+/// One of these models where it is certain to reach the tolerance; the inner `Err` states why it is not.
+pub(super) fn certified_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
+    match model {
+        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
+        _ if pose.scene.falls() => Ok(Err(FALLS.to_owned())),
+        Model::Rigid => rigid::certified(pose, cost),
+        Model::InfiniteBeam => infinite::certified(pose, cost),
+        Model::Emoc => super::emoc::certified(pose, cost),
+    }
 }
 
 /// The modal problem with as many modes as the restitution needs to converge.
@@ -201,9 +217,10 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
 /// A model that was requested; the inner `Err` states why it is not available.
 pub(super) fn forced_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
     match model {
+        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
+        _ if pose.scene.falls() => Ok(Err(FALLS.to_owned())),
         Model::Rigid => rigid::forced(pose, cost),
         Model::InfiniteBeam => infinite::forced(pose, cost),
         Model::Emoc => super::emoc::forced(pose, cost),
-        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
     }
 }

@@ -37,10 +37,11 @@ impl Scene {
         if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) || !stated {
             return self.answer_with(kept).map(Draw::from);
         }
-        let Impact { structure, striker, law, start, settings, .. } = self.impact_of(self.modes.count(), kept)?;
+        let impact = self.impact_of(self.modes.count(), kept)?;
+        let Impact { structure, striker, law, start, settings, .. } = &impact;
         let tolerance = self.tolerance.unwrap_or(TOLERANCE);
-        let settings = Settings { tolerance, estimate_uncertainty: false, ..settings };
-        let solution = kept.solver(&structure)?.solve(&striker, &law, start.as_ref(), &settings).map_err(in_scene)?;
+        let settings = Settings { tolerance, estimate_uncertainty: false, ..*settings };
+        let solution = impact.solver_with(kept)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
         let mut cost = Cost::default();
         cost.add(&solution.counts, structure.modes.len());
         Ok(Draw {

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use vibroimpact_sim::modal::{Recording, Solution, Solver, Structure};
+use vibroimpact_sim::modal::{Recording, Solver, Structure};
 
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, KnownModes};
@@ -80,20 +80,15 @@ impl Kept {
         self.motion.take().filter(|(kept, _)| kept == structure).map(|(_, recording)| recording)
     }
 
-    /// The result of the impact behind the last answer, if it was on this structure and its motion was kept.
-    pub(crate) fn solution_on(&self, structure: &Structure) -> Option<&Solution> {
-        self.motion.as_ref().filter(|(kept, _)| kept == structure).map(|(_, recording)| recording.solution())
-    }
-
     /// Empties the cache.
     pub(crate) fn clear(&mut self) {
         *self = Kept { passing: self.passing, alone: self.alone, ..Kept::default() };
     }
 
-    /// A solver for a structure, with its cached tables.
-    pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&Solver, InvalidInput> {
+    /// A solver for a structure under gravity (m/s^2), with its cached tables.
+    pub(crate) fn solver(&mut self, structure: &Structure, gravity_m_s2: f64) -> Result<&Solver, InvalidInput> {
         let known = self.solvers.iter().position(|(kept, _)| kept == structure);
-        let last = match known.and_then(|place| self.solvers.remove(place)) {
+        let (structure, solver) = match known.and_then(|place| self.solvers.remove(place)) {
             Some(known) => known,
             None => {
                 let turns = self.passing && self.solvers.len() >= PASSING;
@@ -108,8 +103,9 @@ impl Kept {
                 (structure.clone(), solver)
             }
         };
-        let mut modes = last.0.modes.len();
-        self.solvers.push_front(last);
+        let solver = solver.under_gravity(gravity_m_s2).map_err(in_scene)?;
+        let mut modes = structure.modes.len();
+        self.solvers.push_front((structure, solver));
         // the most recently used ones, up to the limit
         let fit = self.solvers.iter().skip(1).take_while(|(structure, _)| {
             modes += structure.modes.len();

@@ -120,11 +120,6 @@ pub(super) fn still_growing(modes: &[Mode]) -> f64 {
     }
 }
 
-/// Speed with which the rigid-body motions of structure and striker approach each other (m/s).
-pub(super) fn approach_m_s(Impact { structure, striker, start, .. }: &Impact) -> f64 {
-    start.as_ref().map_or(striker.speed_m_s, |start| structure.approach_m_s(striker, start))
-}
-
 /// The estimate from the energy of the remainder modes, the last modes of a structure, after the impact: `e_r` with `R >= 1`.
 pub(super) fn energy_of_remainder(impact: &Impact, after: &Solution) -> f64 {
     let Impact { structure, remainder_modes, striker, law, .. } = impact;
@@ -133,7 +128,7 @@ pub(super) fn energy_of_remainder(impact: &Impact, after: &Solution) -> f64 {
     let mass_kg =
         if striker.mass_kg.is_finite() { striker.mass_kg } else { structure.mobility_per_kg(striker).recip() };
     // in units of the speed of approach, so that no square overflows or underflows
-    let unit = approach_m_s(impact) * mass_kg.sqrt();
+    let unit = impact.approach_m_s() * mass_kg.sqrt();
     let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
     let energy: f64 =
         motion.map(|((mode, a), rate)| (mode.omega_rad_s * a / unit).powi(2) + (rate / unit).powi(2)).sum();

@@ -13,14 +13,13 @@
 use serde::Serialize;
 use vibroimpact_sim::modal::Settings;
 
-use super::choice::{Choice, Tried};
-use super::choose::{forced_tier, refused};
+use super::choice::Choice;
+use super::choose::{CHEAPER, certified_tier, forced_tier, refused};
 use super::guess::{fewer, guess};
 use super::pose::Pose;
 use super::theory::Found;
-use super::{Cost, Kept, Model, emoc, infinite, rigid};
+use super::{Cost, Kept, Model};
 use crate::impact::Impact;
-use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
 use crate::text::small;
 
@@ -40,9 +39,6 @@ const SOLVE_S: f64 = 6e-5;
 /// Rough time of an impact on an infinite beam, and of a closed form (s).
 const INFINITE_S: f64 = 1e-4;
 const FORMULA_S: f64 = 3e-5;
-
-/// Tries a model.
-type Certify = fn(&mut Pose, &mut Cost) -> Tried;
 
 /// The result of [`Scene::plan`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -140,14 +136,10 @@ impl Scene {
         let open = self.with_theory(&mut Found::default(), cost)?;
         let (scene, why) = open.as_ref().map_or((self, None), |(scene, why)| (scene, Some(why)));
         let mut pose = Pose::new(scene, &mut kept)?;
-        let cheap: [(Model, Certify, f64); 3] = [
-            (Model::Rigid, rigid::certified, FORMULA_S),
-            (Model::Emoc, emoc::certified, FORMULA_S),
-            (Model::InfiniteBeam, infinite::certified, INFINITE_S),
-        ];
         let mut tiers = Vec::new();
-        for (model, certified, time_s) in cheap {
-            tiers.push(Estimate::tried(model, certified(&mut pose, cost)?, time_s));
+        for model in CHEAPER {
+            let time_s = if model == Model::InfiniteBeam { INFINITE_S } else { FORMULA_S };
+            tiers.push(Estimate::tried(model, certified_tier(model, &mut pose, cost)?, time_s));
         }
         let mut of_modes = modal(&mut pose, cost)?;
         if let Some(why) = why {
@@ -175,7 +167,7 @@ impl Scene {
         }
         let impact = self.impact_of(self.modes.count(), &mut Kept::default())?;
         let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
-        let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(without).into();
+        let mut tiers: Vec<Estimate> = CHEAPER.map(without).into();
         tiers.push(Estimate::of_stated(&impact)?);
         Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
     }
@@ -206,9 +198,8 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
          within {}",
         small(pose.tolerance)
     );
-    let (structure, _) = pose.structure((second / PILOT_PART).max(PILOT_FEWEST), cost)?;
-    let solver = pose.kept.solver(&structure)?;
-    let tried = solver.solve(&pose.striker, &pose.law, None, &pilot()).map_err(in_scene)?;
+    let (structure, remainder_modes) = pose.structure((second / PILOT_PART).max(PILOT_FEWEST), cost)?;
+    let tried = pose.impact(structure, remainder_modes, pilot()).solve_with(pose.kept)?.0;
     let range = if tried.sub_impacts.len() > 1 { SEVERAL } else { ONE_CONTACT };
     Ok(Estimate::of_solves(vec![first, second], tried.counts.steps(), pose.tolerance, range, reason))
 }

@@ -4,6 +4,7 @@ use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Striker, Structure};
 
 use super::{Cost, DEFAULT_TOLERANCE, Kept};
+use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::json::number;
 use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, chooses_modes, compliance, require_elastic};
@@ -141,6 +142,13 @@ impl<'a> Pose<'a> {
         };
         let wall = Wall::new(&law, &striker);
         Ok(Pose { scene, striker, law, tolerance, wall, source, kept })
+    }
+
+    /// The impact on these modes, of which the last are remainder modes.
+    pub fn impact(&self, structure: Structure, remainder_modes: usize, settings: Settings) -> Impact {
+        let Pose { scene, striker, law, .. } = self;
+        let (striker, law, gravity_m_s2) = (*striker, *law, scene.gravity_m_s2);
+        Impact { structure, remainder_modes, striker, law, start: None, gravity_m_s2, settings }
     }
 
     /// Whether the striker moves towards the structure.

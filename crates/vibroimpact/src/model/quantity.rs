@@ -2,7 +2,6 @@
 
 use vibroimpact_sim::modal::{Solution, SubImpact};
 
-use super::left_out::approach_m_s;
 use crate::impact::Impact;
 
 /// Weight of a change of the motion behind a quantity.
@@ -42,7 +41,7 @@ impl Change {
 impl Quantity<'_> {
     /// The restitution of an impact.
     pub fn restitution(impact: &Impact) -> Quantity<'static> {
-        let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / approach_m_s(impact);
+        let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / impact.approach_m_s();
         Quantity::Restitution { per_impulse }
     }
 

@@ -113,11 +113,9 @@ struct Posed {
 impl Posed {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Posed, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
-        let (striker, law) = (pose.striker, pose.law);
         let remainder = &structure.modes[structure.modes.len() - remainder_modes..];
         let resolution = resolution_of(pose, count, remainder, cost)?;
-        let impact = Impact { structure, remainder_modes, striker, law, start: None, settings };
-        Ok(Posed { count, impact, resolution })
+        Ok(Posed { count, impact: pose.impact(structure, remainder_modes, settings), resolution })
     }
 
     fn solved(self, solution: Solution, recording: Option<Recording>) -> Rung {

@@ -164,7 +164,7 @@ fn solve(scene: &Scene, beam: &Beam, needed: Option<Option<usize>>) -> Result<So
     let impact = scene.impact_of(Some(modes), &mut kept)?;
     let Impact { structure, striker, law, start, settings, .. } = &impact;
     let settings = Settings { tolerance: SOLVER_SHARE * tolerance, estimate_uncertainty: false, ..*settings };
-    let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
+    let solution = impact.solver_with(&mut kept)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
     cost.add(&solution.counts, structure.modes.len());
     Ok(Solved { needed, solution, cost, modes: kept.modes })
 }

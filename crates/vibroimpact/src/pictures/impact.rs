@@ -110,12 +110,8 @@ fn peak(contact: &Contact, samples: &[Sample]) -> Peak {
 }
 
 /// Energy of the striker (zero for a stop) and of the structure (J).
-fn energies_j(resolved: &Resolved, time_s: f64) -> [f64; 2] {
-    let Resolved { impact, history, .. } = resolved;
-    let mass_kg = impact.striker.mass_kg;
-    let striker_j =
-        if mass_kg.is_finite() { 0.5 * mass_kg * history.at(time_s).striker_velocity_m_s.powi(2) } else { 0.0 };
-    [striker_j, history.modal_energies_j(time_s).iter().sum()]
+fn energies_j(Resolved { history, .. }: &Resolved, time_s: f64) -> [f64; 2] {
+    [history.striker_energy_j(time_s), history.modal_energies_j(time_s).iter().sum()]
 }
 
 /// Energies of striker and structure, and the rest, which the contact stores or contact and damping have dissipated.

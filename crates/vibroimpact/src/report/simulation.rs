@@ -10,7 +10,7 @@ use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
-use crate::text::{self, leaves, plus_minus, quantity, restitution, significant, stopped};
+use crate::text::{leaves, plus_minus, quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
 /// Under the picture of an impact.
@@ -297,9 +297,6 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
         let value = restitution(value, summary.restitution_uncertainty);
         rows.push(row("restitution", format!("**{value}**")));
     }
-    if let Some(falling) = &summary.falling {
-        rows.push(row("restitution if the striker falls", text::falling(falling)));
-    }
     match &summary.rod {
         Some(rod) => {
             rows.push(row("velocity of the rod's centre", quantity(rod.centre_velocity_m_s, "m/s")));
@@ -311,6 +308,9 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
             let name = format!("striker {} at", leaves(summary.outcome));
             rows.push(row(&name, quantity(summary.striker_velocity_m_s, "m/s")));
         }
+    }
+    if let Some(rise_m) = summary.rise_m {
+        rows.push(row("height of the rebound", quantity(rise_m, "m")));
     }
     rows.push(row("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s"))));
     rows

@@ -47,11 +47,20 @@ pub struct Scene {
     pub residual_compliance: Option<bool>,
     /// Motion of the structure before the impact; at rest and touched by the striker when left out.
     pub start: Option<Start>,
+    /// Acceleration of gravity (m/s^2) for a striker that falls on the structure; 0 when left out. The impact then ends with the first
+    /// flight that rises above the undeflected structure by more than a hundredth of the height of the fall, and the restitution is that
+    /// of a drop test, see [`vibroimpact_sim::modal::Solver::under_gravity`].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub gravity_m_s2: f64,
     /// Requested accuracy of the restitution. When left out: 1e-3, which includes truncation, where the program chooses the
     /// modes; 1e-9, of the solver alone, where the modes are given.
     pub tolerance: Option<f64>,
     /// Yield strength of the softer body (Pa), against which the pressure in the contact is judged; it changes no result.
     pub yield_strength_pa: Option<f64>,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// The file before its two tagged objects are read, so that a fault in them keeps its path.
@@ -75,6 +84,8 @@ struct Outline {
     modes: Modes,
     residual_compliance: Option<bool>,
     start: Option<Value>,
+    #[serde(default)]
+    gravity_m_s2: f64,
     tolerance: Option<f64>,
     yield_strength_pa: Option<f64>,
 }
@@ -93,6 +104,7 @@ impl Scene {
             modes: Modes::Auto,
             residual_compliance: None,
             start: None,
+            gravity_m_s2: 0.0,
             tolerance: None,
             yield_strength_pa: None,
         }
@@ -107,6 +119,16 @@ impl Scene {
     /// Checks the yield strength.
     pub(crate) fn require_yield_strength(&self) -> Result<(), InvalidInput> {
         self.yield_strength_pa.map_or(Ok(()), |strength| error::require_positive("yield_strength_pa", strength))
+    }
+
+    /// Whether the striker falls: the impact is under gravity.
+    pub(crate) fn falls(&self) -> bool {
+        self.gravity_m_s2 != 0.0
+    }
+
+    /// Refuses gravity, which this does not consider.
+    pub(crate) fn require_no_gravity(&self, why: &str) -> Result<(), InvalidInput> {
+        InvalidInput::unless(!self.falls(), "gravity_m_s2", self.gravity_m_s2, format!("left out, because {why}"))
     }
 
     /// Reads a scene from JSON text.
@@ -166,6 +188,7 @@ impl Scene {
             modes: outline.modes,
             residual_compliance: outline.residual_compliance,
             start,
+            gravity_m_s2: outline.gravity_m_s2,
             tolerance: outline.tolerance,
             yield_strength_pa: outline.yield_strength_pa,
         };

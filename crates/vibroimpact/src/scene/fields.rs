@@ -29,6 +29,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("model", "one of auto, rigid, infinite-beam, modal, emoc"),
     ("modes", "\"auto\" or a whole number from 0 to 10000"),
     ("residual_compliance", "true or false"),
+    ("gravity_m_s2", NOT_NEGATIVE),
     ("tolerance", "a number from 1e-13 to 0.1, or from 1e-10 to 0.5 where the program chooses the modes"),
     ("yield_strength_pa", POSITIVE),
     ("ends", "a list of two, the left and the right end, each one of clamped, pinned, free, guided"),

@@ -75,8 +75,11 @@ fn dependent_fields() -> Value {
         "then": { "properties": stop },
         "else": { "oneOf": mass_or_sphere }
     });
-    let infinite = none(&["location_m", "location", "start", "tolerance"]);
+    let mut infinite = none(&["location_m", "location", "start", "tolerance"]);
     let mut rod = none(&["location_m", "location", "start", "residual_compliance"]);
+    for without in [&mut infinite, &mut rod] {
+        without.insert("gravity_m_s2".to_owned(), json!({ "const": 0 }));
+    }
     rod.insert(
         "striker".to_owned(),
         json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m", "material"]) }),

@@ -70,6 +70,7 @@ impl Scene {
             let allowed = "a structure with modes, because the derivatives are computed along the motion of the modes";
             return Err(InvalidInput::new("structure", "an infinite one", allowed));
         }
+        self.require_no_gravity("derivatives are not computed under gravity")?;
         match self.model {
             Model::Auto | Model::Modal => {}
             Model::Rigid | Model::Emoc => return closed_form::sensitivity(self, fields),

@@ -9,7 +9,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use crate::model::{answer_text, wrapped};
 use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
-use crate::summary::{Falling, Summary};
+use crate::summary::Summary;
 pub use parts::{counted, printable, quantity, shorten, significant};
 pub(crate) use parts::{
     filled, leaves, plus_minus, quantity_apart, residual, restitution, small, stopped, superscript,
@@ -66,8 +66,9 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
         return format!("immovable stop before a {structure}{place}; {} contact", scene.contact.law_name());
     }
     format!(
-        "{} striker at {} on a {structure}{place}; {} contact",
+        "{} striker {} {} on a {structure}{place}; {} contact",
         quantity(striker.mass_kg * 1e3, "g"),
+        if scene.falls() { "falling at" } else { "at" },
         quantity(striker.speed_m_s, "m/s"),
         scene.contact.law_name()
     )
@@ -78,15 +79,6 @@ pub fn infinite_headline(scene: &Scene, striker: &Striker) -> String {
     let (mass, speed) = (quantity(striker.mass_kg * 1e3, "g"), quantity(striker.speed_m_s, "m/s"));
     let structure = scene.structure.kind().replace('-', " ");
     format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
-}
-
-/// The rebound of a striker that falls.
-pub(crate) fn falling(&Falling { restitution, rise_m, sub_impact_count }: &Falling) -> String {
-    if rise_m == 0.0 {
-        return "0: it hardly rises above the level of its first touch".to_owned();
-    }
-    let contacts = counted(sub_impact_count as u64, "sub-impact", "sub-impacts");
-    format!("{restitution:.2}: it rises by {}, after {contacts}", quantity(rise_m, "m"))
 }
 
 /// The result of an impact.
@@ -105,9 +97,6 @@ pub fn result(summary: &Summary) -> String {
         line("restitution", restitution(value, summary.restitution_uncertainty));
         line("as modelled", restitution(value, summary.uncertainty.solver));
     }
-    if let Some(falling) = &summary.falling {
-        line("if the striker falls", self::falling(falling));
-    }
     let leaves = leaves(summary.outcome);
     match &summary.rod {
         Some(rod) => {
@@ -121,6 +110,9 @@ pub fn result(summary: &Summary) -> String {
         // the final speed of a stop is zero
         None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}
         None => line(&format!("striker {leaves} at"), quantity(summary.striker_velocity_m_s, "m/s")),
+    }
+    if let Some(rise_m) = summary.rise_m {
+        line("and rises to", quantity(rise_m, "m"));
     }
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
     let remainder = if summary.remainder_modes > 0 {

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use super::check::Check;
 use super::course::{Course, Pulse};
 use super::section::Section;
-use crate::falling::{self, GRAVITY_M_S2};
 use crate::scene::{Contact, InvalidInput, Scene, Structure};
 use crate::text::{quantity, small};
 
@@ -17,7 +16,9 @@ const CONTACT_RADIUS: [f64; 2] = [0.1, 0.3];
 const INDENTATION: [f64; 2] = [0.2, 0.5];
 const EDGE: [f64; 2] = [1.0, 0.25];
 const BALL: [f64; 2] = [5.0, 2.0];
-const GRAVITY: [f64; 2] = [falling::MATTERS, 0.1];
+const GRAVITY: [f64; 2] = [0.01, 0.1];
+/// Acceleration of gravity (m/s^2).
+const GRAVITY_M_S2: f64 = 9.80665;
 /// `omega R / c_t` of the lowest mode of a ball that an impact excites.
 const OBLONG: f64 = 2.64;
 
@@ -128,10 +129,13 @@ fn ball(scene: &Scene, hardest: &Pulse) -> Option<Check> {
 /// The speed that a ball which falls on the structure gains during the interaction.
 fn gravity(scene: &Scene, course: &Course) -> Option<Check> {
     let (time_s, speed) = (course.interaction_s?, scene.striker.speed_m_s);
-    let share = falling::gain(time_s, speed);
+    if scene.falls() {
+        return None;
+    }
+    let share = GRAVITY_M_S2 * time_s / speed;
     let says = format!(
         "in {} a body falls {} and gains {} % of the speed of impact, if it falls on the structure; the restitution \
-         leaves gravity out",
+         leaves gravity out, unless the scene states gravity_m_s2",
         quantity(time_s, "s"),
         quantity(0.5 * GRAVITY_M_S2 * time_s * time_s, "m"),
         small(100.0 * share)
