@@ -153,7 +153,7 @@ fn gravity_is_refused_where_it_has_no_meaning() {
     let mut rigid = scene(3, 0.01);
     rigid["model"] = json!("emoc");
     let fault = Scene::from_value(&rigid).unwrap().simulate().unwrap_err();
-    assert!(fault.field.to_string() == "model" && fault.to_string().contains("gravity_m_s2"), "{fault}");
+    assert!(fault.field == "model" && fault.to_string().contains("gravity_m_s2"), "{fault}");
     let scene = Scene::from_value(&scene(3, 0.01)).unwrap();
     assert_eq!(scene.sensitivity(&[]).unwrap_err().field.to_string(), "gravity_m_s2");
     assert_eq!(scene.emoc(&Default::default(), None).unwrap_err().field.to_string(), "gravity_m_s2");

@@ -46,46 +46,50 @@ pub(crate) fn centred_mean(bessel: &Nodal, force: &Legendre) -> Complex64 {
 }
 
 /// The spherical Bessel functions `j_n(y)`: by the recurrence `j_{n-1} + j_{n+1} = (2n+1)/y j_n`, upwards where that is stable
-/// and otherwise downwards from the power series of the last two.
+/// and otherwise downwards, from an order so high that its value does not matter (Miller's algorithm), or from a power series.
 pub(crate) fn spherical_bessel(y: f64) -> Nodal {
-    const LAST: usize = Q - 1;
+    /// Order at which the recurrence downwards begins: `(j_24(y)/j_7(y))^2 < 1e-18` up to `y = Q`.
+    const HIGH: usize = 24;
+    const FACTORS: [f64; HIGH] = {
+        let (mut factors, mut n) = ([0.0; HIGH], 0);
+        while n < HIGH {
+            factors[n] = (2 * n + 1) as f64;
+            n += 1;
+        }
+        factors
+    };
     let mut bessel = [0.0; Q];
-    if y.abs() > Q as f64 {
-        let (sin, cos) = y.sin_cos();
-        bessel[0] = sin / y;
-        bessel[1] = (bessel[0] - cos) / y;
-        for n in 1..LAST {
-            bessel[n + 1] = (2 * n + 1) as f64 / y * bessel[n] - bessel[n - 1];
+    if y.abs() < 1e-2 {
+        // j_n(y) = y^n/(2n+1)!! (1 - y^2/2/(2n+3) + (y^2/2)^2/2/(2n+3)/(2n+5) - ..), four terms of which matter
+        let (half_square, mut power) = (0.5 * y * y, 1.0);
+        for (n, value) in bessel.iter_mut().enumerate() {
+            let [a, b, c] = [3, 5, 7].map(|more| (2 * n + more) as f64);
+            *value =
+                power * (1.0 - half_square / a * (1.0 - half_square / (2.0 * b) * (1.0 - half_square / (3.0 * c))));
+            power *= y / a;
         }
         return bessel;
     }
-    // j_n(y) = y^n/(2n+1)!! sum_k (-y^2/2)^k / (k! (2n+3) (2n+5) .. (2n+2k+1))
-    let half_square = -0.5 * y * y;
-    let series = |n: usize| {
-        let (mut term, mut sum, mut k) = (1.0f64, 1.0, 1);
-        while term.abs() > 1e-17 {
-            term *= half_square / (k * (2 * n + 2 * k + 1)) as f64;
-            sum += term;
-            k += 1;
+    let (inverse, (sin, cos)) = (y.recip(), y.sin_cos());
+    let first = [sin * inverse, (sin * inverse - cos) * inverse];
+    if y.abs() > Q as f64 {
+        bessel[..2].copy_from_slice(&first);
+        for n in 1..Q - 1 {
+            bessel[n + 1] = FACTORS[n] * inverse * bessel[n] - bessel[n - 1];
         }
-        sum
-    };
-    if y.abs() < 1e-2 {
-        // a division by y would magnify rounding
-        let mut power = 1.0;
-        for n in 0..Q {
-            bessel[n] = power * series(n);
-            power *= y / (2 * n + 3) as f64;
-        }
-    } else {
-        let power = (0..LAST - 1).fold(1.0, |power, n| power * y / (2 * n + 3) as f64);
-        bessel[LAST - 1] = power * series(LAST - 1);
-        bessel[LAST] = power * y / (2 * LAST + 1) as f64 * series(LAST);
-        for n in (1..LAST).rev() {
-            bessel[n - 1] = (2 * n + 1) as f64 / y * bessel[n] - bessel[n + 1];
+        return bessel;
+    }
+    let (mut above, mut here) = (0.0, 1.0);
+    for n in (1..HIGH).rev() {
+        let below = FACTORS[n] * inverse * here - above;
+        (above, here) = (here, below);
+        if n <= Q {
+            bessel[n - 1] = below;
         }
     }
-    bessel
+    // the larger of the first two has more digits
+    let scale = if first[0].abs() > first[1].abs() { first[0] / bessel[0] } else { first[1] / bessel[1] };
+    bessel.map(|value| scale * value)
 }
 
 #[cfg(test)]
@@ -95,7 +99,7 @@ mod tests {
 
     #[test]
     fn the_mean_of_a_turned_polynomial_is_its_integral() {
-        for angle in [0.0, 1e-6, 0.0199, 0.0201, 0.7, -3.0, 15.9, 16.1, 40.0] {
+        for angle in [0.0, 1e-6, 0.0199, 0.0201, 0.7, -3.0, 6.2, 9.0, 15.9, 16.1, 40.0] {
             for n in 0..Q {
                 let mut force = [0.0; Q];
                 force[n] = 1.0;

@@ -104,7 +104,8 @@ impl<L: ContactLaw> History<L> {
     }
 
     /// Time (s) up to which the motion is known. Later times are treated as this one. It is infinite after a rebound, which is
-    /// followed by free motion; under gravity, it is the time at which the rebound is highest. A sustained contact is computed at least up to [`Settings::until_s`](super::Settings).
+    /// followed by free motion; under gravity, it is the time at which the rebound is highest. A sustained contact is computed at least
+    /// up to [`Settings::until_s`](super::Settings).
     pub fn known_until_s(&self) -> f64 {
         self.known_until_s
     }
