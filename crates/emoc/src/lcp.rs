@@ -7,6 +7,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 use invalid_input::InvalidInput;
 
+/// Sweeps over the matrix after which its rows and columns count as balanced.
+const SWEEPS: usize = 8;
+
 /// The result of Lemke's method.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lcp {
@@ -41,7 +44,7 @@ impl core::fmt::Display for Lcp {
 /// ```
 ///
 /// # Errors
-/// [`InvalidInput`] for a matrix whose size does not fit `q`, or a number beyond 1e100 in magnitude.
+/// [`InvalidInput`] for a matrix whose size does not fit `q`, a number beyond 1e100 in magnitude, or a solution too large for a number.
 pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
     let n = q.len();
     require_finite("q", q, n)?;
@@ -49,7 +52,13 @@ pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
     if q.iter().all(|&x| x >= 0.0) {
         return Ok(Lcp::Solved(vec![0.0; n]));
     }
-    Ok(Tableau::new(m, q).run())
+    let found = Tableau::new(m, q).run();
+    if let Lcp::Solved(z) = &found
+        && let Some(i) = z.iter().position(|z| !z.is_finite())
+    {
+        return Err(InvalidInput::new(("q", i), q[i], "small enough that the solution is a finite number"));
+    }
+    Ok(found)
 }
 
 /// Impulses that open every contact at no less than `ebar` times its speed of approach, with equality if there is an impulse
@@ -86,40 +95,58 @@ pub fn newton_impact(problem: &Problem) -> Result<Option<Solution>, InvalidInput
     Ok(Some(problem.solution(outcome, impulse, &rate_changes)))
 }
 
-/// Dictionary `[ B^-1 | -B^-1 M | -B^-1 1 | B^-1 q ]` of `w - M z - 1 z_0 = q`: columns `0..n` belong to `w`,
+/// Dictionary `[ B^-1 | -B^-1 M | -B^-1 d | B^-1 q ]` of `w - M z - d z_0 = q`: columns `0..n` belong to `w`,
 /// `n..2n` to `z`, `2n` to the covering variable `z_0`, `2n + 1` to the right-hand side.
+///
+/// The problem is that of `D M D` and `D q / unit`, whose solution is `D^-1 z / unit`: with a heavy and a light body an entry of `M` may be far smaller
+/// than others and still decide whether there is a solution. The covering vector `d` is of the size of `q`, so that no entry of `q` is
+/// lost in the sum `q + d z_0`.
 struct Tableau {
     n: usize,
     rows: Vec<Vec<f64>>,
+    /// The largest term of each entry, of which the entry may be the rounding.
+    terms: Vec<Vec<f64>>,
     basis: Vec<usize>,
-    scale: f64,
+    /// The diagonal of `D`.
+    scale: Vec<f64>,
+    /// The magnitude of the most negative entry of `D q`.
+    unit: f64,
 }
 
 impl Tableau {
     fn new(m: &[f64], q: &[f64]) -> Tableau {
         let n = q.len();
-        let scale = m.iter().fold(0.0_f64, |s, x| s.max(x.abs())).max(f64::MIN_POSITIVE);
-        let rows = (0..n)
+        let scale = balance(m, n);
+        let q: Vec<f64> = q.iter().zip(&scale).map(|(q, scale)| q * scale).collect();
+        let unit = q.iter().fold(0.0, |most, q| f64::max(most, -q));
+        let q: Vec<f64> = q.iter().map(|q| q / unit).collect();
+        let least = q.iter().filter(|q| **q < 0.0).fold(1.0, |least, q| f64::min(least, -q));
+        let rows: Vec<Vec<f64>> = (0..n)
             .map(|i| {
                 let mut row = vec![0.0; 2 * n + 2];
                 row[i] = 1.0;
                 for j in 0..n {
-                    row[n + j] = -m[i * n + j] / scale;
+                    row[n + j] = -scale[i] * m[i * n + j] * scale[j];
                 }
-                row[2 * n] = -1.0;
+                // z_0 enters in the row of the most negative q. In the others d is larger, by factors that differ from row to row, so that
+                // the entries of q + d z_0 are not all zero at once.
+                let beyond = if q[i] == -1.0 { 1.0 } else { 1.5 + (0.618 * i as f64) % 1.0 };
+                row[2 * n] = -beyond * q[i].abs().clamp(least, 1.0);
                 row[2 * n + 1] = q[i];
                 row
             })
             .collect();
-        Tableau { n, rows, basis: (0..n).collect(), scale }
+        let terms = rows.iter().map(|row| row.iter().map(|x| x.abs()).collect()).collect();
+        Tableau { n, rows, terms, basis: (0..n).collect(), scale, unit }
     }
 
     fn run(mut self) -> Lcp {
         let n = self.n;
-        // z_0 enters for the most negative q, which makes every right-hand side non-negative.
+        // z_0 enters and makes every right-hand side non-negative.
         let mut leaving = 0;
+        let needed = |row: &[f64]| row[2 * n + 1] / -row[2 * n];
         for i in 1..n {
-            if self.rows[i][2 * n + 1] < self.rows[leaving][2 * n + 1] {
+            if needed(&self.rows[i]) < needed(&self.rows[leaving]) {
                 leaving = i;
             }
         }
@@ -146,7 +173,7 @@ impl Tableau {
         let n = self.n;
         let mut best: Option<usize> = None;
         for i in 0..n {
-            if self.rows[i][entering] <= 1e-11 {
+            if self.rows[i][entering] <= 1e-11 * self.terms[i][entering] {
                 continue;
             }
             best = match best {
@@ -174,15 +201,17 @@ impl Tableau {
 
     fn pivot(&mut self, row: usize, column: usize) {
         let pivot = self.rows[row][column];
-        for x in &mut self.rows[row] {
-            *x /= pivot;
-        }
-        let pivot_row = self.rows[row].clone();
-        for (i, other) in self.rows.iter_mut().enumerate() {
+        self.rows[row].iter_mut().for_each(|x| *x /= pivot);
+        self.terms[row].iter_mut().for_each(|term| *term /= pivot.abs());
+        let (pivot_row, pivot_terms) = (self.rows[row].clone(), self.terms[row].clone());
+        for (i, (other, terms)) in self.rows.iter_mut().zip(&mut self.terms).enumerate() {
             let factor = other[column];
             if i != row && factor != 0.0 {
                 for (x, p) in other.iter_mut().zip(&pivot_row) {
                     *x -= factor * p;
+                }
+                for (term, p) in terms.iter_mut().zip(&pivot_terms) {
+                    *term = term.max((factor * p).abs());
                 }
                 other[column] = 0.0;
             }
@@ -195,9 +224,28 @@ impl Tableau {
         let mut z = vec![0.0; n];
         for (row, &variable) in self.rows.iter().zip(&self.basis) {
             if (n..2 * n).contains(&variable) {
-                z[variable - n] = (row[2 * n + 1] / self.scale).max(0.0);
+                z[variable - n] = (self.scale[variable - n] * (self.unit * row[2 * n + 1])).max(0.0);
             }
         }
         z
     }
+}
+
+/// Factors `D` by which the largest entry of each row and column of `D M D` is near 1 (Ruiz 2001), as powers of 2, which round nothing.
+/// A row and column of zeros keep theirs.
+fn balance(m: &[f64], n: usize) -> Vec<f64> {
+    let mut scale = vec![1.0; n];
+    for _ in 0..SWEEPS {
+        let largest = |i: usize| {
+            let pairs = (0..n).flat_map(|j| [(i, j), (j, i)]);
+            pairs.fold(0.0_f64, |most, (i, j)| most.max((scale[i] * m[i * n + j] * scale[j]).abs()))
+        };
+        let most: Vec<f64> = (0..n).map(largest).collect();
+        for (scale, most) in scale.iter_mut().zip(most).filter(|(_, most)| *most > 0.0) {
+            // 2^-(e/2) for a number from 2^e to below 2^(e+1); there is no square root without `std`
+            let exponent = (most.to_bits() >> 52) as i64 - 1023;
+            *scale *= f64::from_bits(((1023 - exponent.div_euclid(2)).unsigned_abs()) << 52);
+        }
+    }
+    scale
 }

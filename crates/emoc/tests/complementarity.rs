@@ -42,6 +42,26 @@ fn a_problem_without_solution_ends_on_a_ray() {
     assert!(solve(&[1.0], &[f64::NAN]).is_err() && solve(&[1.0, 2.0], &[1.0]).is_err());
 }
 
+/// `M` of a light and a heavy body, or of any other units, is `D M D` of one with entries near 1, and its solution `D^-1 z`.
+#[test]
+fn light_and_heavy_bodies_are_no_ray() {
+    for smallest in [1e-10, 1e-12, 1e-20, 1e-100, 1e-190] {
+        let near = |z: f64, exact: f64| assert!((z / exact - 1.0).abs() < 1e-14, "{smallest} {z}");
+        let Lcp::Solved(z) = solve(&[1.0, 0.0, 0.0, smallest], &[-1.0, -2.0]).unwrap() else { panic!("{smallest}") };
+        near(z[0], 1.0);
+        near(z[1], 2.0 / smallest);
+        let d = [1.0, f64::sqrt(smallest)];
+        let m: Vec<f64> = [2.0, 1.0, 1.0, 2.0].iter().enumerate().map(|(k, m)| d[k / 2] * m * d[k % 2]).collect();
+        let Lcp::Solved(z) = solve(&m, &[-5.0 * d[0], -6.0 * d[1]]).unwrap() else { panic!("{smallest}") };
+        near(z[0], 4.0 / 3.0);
+        near(z[1], 7.0 / 3.0 / d[1]);
+    }
+    let Lcp::Solved(z) = solve(&[1.0, 0.0, 0.0, 1.0], &[-1.0, -1e30]).unwrap() else { panic!() };
+    assert!((z[0] - 1.0).abs() < 1e-14 && (z[1] / 1e30 - 1.0).abs() < 1e-14, "{z:?}");
+    let refused = solve(&[1e-300], &[-1e100]).unwrap_err().to_string();
+    assert_eq!(refused, "q[0] = -1e+100 is not allowed; it must be small enough that the solution is a finite number");
+}
+
 #[test]
 fn one_striker_rebounds_by_the_formula() {
     let mut random = Random(7);
