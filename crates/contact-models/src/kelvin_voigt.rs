@@ -96,7 +96,9 @@ fn restitution_at(zeta: f64) -> f64 {
     if root == 0.0 {
         return (-2.0_f64).exp();
     }
-    if zeta < 1.0 { (-2.0 * zeta * zeta.acos() / root).exp() } else { (-2.0 * zeta * zeta.acosh() / root).exp() }
+    // acosh(zeta) = ln(zeta + root), whose argument is near 1 at critical damping
+    let angle = if zeta < 1.0 { zeta.acos() } else { (zeta - 1.0 + root).ln_1p() };
+    (-2.0 * zeta * angle / root).exp()
 }
 
 /// The damping ratio `zeta` that gives the restitution at a wall, `0.001 <= restitution <= 1`.

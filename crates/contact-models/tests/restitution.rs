@@ -88,7 +88,13 @@ fn exact_calibrations_have_the_required_restitution() {
     }
     // Critical damping, where the closed form is a limit.
     let critical = KelvinVoigt::new(1e8, 2.0 * (1e8 * BALL_MASS_KG).sqrt()).unwrap();
-    assert!((wall(critical, 1.0) - (-2.0_f64).exp()).abs() < 1e-7);
+    assert!((wall(critical, 1.0) - (-2.0_f64).exp()).abs() < 1e-15);
+    // 2 zeta acos(zeta)/sqrt(1 - zeta^2) = 2 - 4 d/3 - 2 d^2/5 - ... with d = 1 - zeta of either sign
+    for d in [1e-15, 1e-12, 1e-9, 1e-6, 1e-5, -1e-15, -1e-12, -1e-9, -1e-6, -1e-5] {
+        let near = KelvinVoigt { damping_n_s_m: critical.damping_n_s_m * (1.0 - d), ..critical };
+        let exact = (-2.0 + d * (4.0 / 3.0 + 0.4 * d)).exp();
+        assert!((wall(near, 1.0) / exact - 1.0).abs() < 2e-15, "{d} {} {exact}", wall(near, 1.0));
+    }
 }
 
 /// Below the lowest approach speed the damping is constant, so that slow impacts have a higher restitution.
