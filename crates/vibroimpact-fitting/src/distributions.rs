@@ -5,6 +5,9 @@ use crate::incomplete::{lower_beta, upper_gamma};
 /// Degrees of freedom from which on an expansion about the normal distribution is exact to rounding.
 const MANY: f64 = 1e4;
 
+/// Logarithms between which Student's quantiles lie.
+const LOGARITHMS: (f64, f64) = (-340.0, 60.0);
+
 /// Probability that a chi-square variable with `freedom` degrees of freedom exceeds `value`, to about 1e-9; 1 if `freedom` is 0.
 ///
 /// ```
@@ -33,13 +36,16 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
         _ if above == 0 || below == 0 || value <= 0.0 => 1.0,
         _ if value.is_nan() => f64::NAN,
         _ if value.is_infinite() => 0.0,
-        _ => lower_beta(0.5 * b, 0.5 * a, b / (b + a * value)),
+        _ => {
+            let ratio = value * (a / b);
+            lower_beta(0.5 * b, 0.5 * a, 1.0 / (1.0 + ratio), 1.0 / (1.0 + 1.0 / ratio))
+        }
     }
 }
 
 /// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1, otherwise NaN):
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`, and for many degrees of freedom an expansion about the normal variable. The degrees of freedom are at least 1 and need not be an integer. `None`
-/// stands for a known standard deviation, that is the normal variable.
+/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`, and for many degrees of freedom an expansion about the normal variable. The degrees
+/// of freedom are at least 1 and need not be an integer. `None` stands for a known standard deviation, that is the normal variable.
 ///
 /// ```
 /// assert!((fitting::two_sided_quantile(0.95, None) - 1.959964).abs() < 1e-6);
@@ -61,8 +67,22 @@ pub fn two_sided_quantile(level: f64, freedom: Option<f64>) -> f64 {
             [(w + 1.0) / 4.0, ((5.0 * w + 16.0) * w + 3.0) / 96.0, (((3.0 * w + 19.0) * w + 17.0) * w - 15.0) / 384.0];
         return z * orders.iter().rev().fold(1.0, |sum, order| (sum - 1.0 + order) / f + 1.0);
     }
-    let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
-    (f * (1.0 - x) / x).sqrt()
+    // Of the two probabilities the smaller one is compared, which keeps its digits.
+    let too_small = |t: f64| {
+        let (ratio, inverse) = (t * (t / f), f / t / t);
+        let (outside, inside) = (1.0 / (1.0 + ratio), 1.0 / (1.0 + inverse));
+        if level < 0.5 {
+            lower_beta(0.5, 0.5 * f, inside, outside) < level
+        } else {
+            lower_beta(0.5 * f, 0.5, outside, inside) > 1.0 - level
+        }
+    };
+    let (mut low, mut high) = LOGARITHMS;
+    while high - low > 1e-13 {
+        let middle = 0.5 * (low + high);
+        *(if too_small(middle.exp()) { &mut low } else { &mut high }) = middle;
+    }
+    (0.5 * (low + high)).exp()
 }
 
 #[cfg(test)]
@@ -92,6 +112,11 @@ mod tests {
             (100_500.0, 100_000, 0.131_854_811_603_383),
             (95_000.0, 100_000, 1.0),
             (1e300, 100_000, 0.0),
+            (1e7, 10_000_000, 0.499_940_529_196_062),
+            (10_002_236.0, 10_000_000, 0.308_503_527_390_500),
+            (99_985_857.0, 100_000_000, 0.841_359_537_221_296),
+            (100_100_000.0, 100_000_000, 7.816_251e-13),
+            (1e10, 10_000_000_000, 0.499_998_119_368_055),
         ];
         for (value, freedom, known) in chi_square {
             let found = chi_square_tail(value, freedom);
@@ -102,6 +127,9 @@ mod tests {
             (1.02, 8000, 9000, 0.180_925_399_348_137),
             (0.98, 8000, 9000, 0.823_566_003_030_755),
             (1.05, 7000, 7000, 0.020_632_128_337_233),
+            (1e-3, 1, 1_000_000, 0.974_772_885_680_942),
+            (1e-12, 1, 20_000, 0.999_999_202_125_413),
+            (1e-14, 1, 3, 0.999_999_926_489_481),
         ];
         for (value, above, below, known) in fisher {
             let found = fisher_tail(value, above, below);
@@ -126,6 +154,17 @@ mod tests {
             [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
         for (freedom, t) in exact {
             assert!((two_sided_quantile(level, Some(f64::from(freedom))) / t - 1.0).abs() < 1e-8, "{freedom}");
+        }
+        let by_40_digits = [
+            (0.01, 10.0, 0.012_850_279_188_571_4),
+            (0.01, 9999.0, 0.012_533_782_929_290_4),
+            (1e-6, 3.0, 1.360_349_523_176_22e-6),
+            (0.2, 9999.0, 0.253_353_844_119_836),
+            (0.9999, 1.5, 384.572_402_521_582),
+        ];
+        for (level, freedom, t) in by_40_digits {
+            let found = two_sided_quantile(level, Some(freedom));
+            assert!((found / t - 1.0).abs() < 1e-11, "{level} {freedom}: {found} {t}");
         }
         let normal = two_sided_quantile(level, None);
         assert_eq!(two_sided_quantile(level, Some(f64::INFINITY)), normal);
