@@ -158,13 +158,14 @@ fn power_integral(far: f64, near: f64, p: f64) -> f64 {
 fn ramp_integral(far: f64, near: f64, p: f64) -> f64 {
     let h = far - near;
     if near > 20.0 * h {
-        // Simpson-like Gauss rule with three points: the integrand is nearly a parabola
-        let root = 0.6f64.sqrt();
-        let at = |x: f64, w: f64| {
-            let v = 0.5 * h * (1.0 + x);
-            w * 0.5 * h * p * (near + v).powf(p - 1.0) * v
-        };
-        return at(-root, 5.0 / 9.0) + at(0.0, 8.0 / 9.0) + at(root, 5.0 / 9.0);
+        // Far away the two terms below cancel: the binomial series of (1 + v/near)^(p-1) with v = u - near, integrated term by term.
+        let (mut coefficient, mut sum, mut k) = (1.0, 0.0, 0.0);
+        while f64::abs(coefficient) > 1e-17 {
+            sum += coefficient / (k + 2.0);
+            coefficient *= (p - 1.0 - k) / (k + 1.0) * (h / near);
+            k += 1.0;
+        }
+        return p * near.powf(p - 1.0) * h * h * sum;
     }
     p / (p + 1.0) * power_integral(far, near, p + 1.0) - near * power_integral(far, near, p)
 }
@@ -292,6 +293,20 @@ mod tests {
             let both = riemann_liouville_sampled(a, &times, &values).unwrap();
             assert_eq!(both[0], f64::INFINITY);
             near(both[40], of_power(a, 0.0, 2.0) + of_power(a, 1.0, 2.0));
+        }
+    }
+
+    #[test]
+    fn straight_lines_are_integrated_exactly() {
+        for n in [10, 30, 200] {
+            let times = graded(n);
+            let values: Vec<f64> = times.iter().map(|t| 1.0 + 3.0 * t).collect();
+            for order in [0.01, 0.5, 1.0, 2.7, 5.0, 8.0, 12.3, 16.0] {
+                for (t, got) in times.iter().zip(integral_sampled(order, &times, &values).unwrap()).skip(1) {
+                    let exact = of_power(-order, 0.0, *t) + 3.0 * of_power(-order, 1.0, *t);
+                    assert!((got / exact - 1.0).abs() < 3e-13, "{n} {order} {t}: {got} {exact}");
+                }
+            }
         }
     }
 
