@@ -595,6 +595,22 @@ fn derivatives_at_a_touch_at_the_start_hold_on_one_side() {
     assert!(output(&arguments(&[])).contains("Derivatives by contacts[0].gap_m hold for an increase of it"));
 }
 
+/// The gap is that between the surfaces at the start, so that they touch there whatever the structure is displaced by: what rounding
+/// leaves of the change of their distance is none.
+#[test]
+fn a_displacement_at_the_start_does_not_part_surfaces_that_touch() {
+    for displacement in [-1e-4, 0.0, 1e-6] {
+        let tree = changed("pinned-beam.json", |tree| {
+            tree["start"] =
+                json!({ "moving_modes": [{ "mode": 1, "displacement_m": displacement, "velocity_m_s": 0.1 }] });
+        });
+        let path = "start.moving_modes[0].displacement_m".to_owned();
+        let found = Scene::from_value(&tree).unwrap().sensitivity(&[path]).unwrap();
+        let start = found.of("sub_impacts[0].start_s", &found.table.fields[0].path).unwrap();
+        assert_eq!((start.value, found.table.fields[0].holds_for), (0.0, None), "{displacement}");
+    }
+}
+
 /// A jump moves to one side only, and so does a load that begins with the run. Other times have derivatives.
 #[test]
 fn times_at_which_a_load_jumps_have_no_derivative() {

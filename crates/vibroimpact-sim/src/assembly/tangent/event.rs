@@ -78,10 +78,13 @@ impl Walk<'_> {
         speed: [f64; 2],
     ) -> Result<(f64, f64), NoDerivative> {
         let change = self.overlap(d, contact, time_s, state, moved);
-        // bodies that rest against each other from the start do so after any change that leaves their distance as it is
-        if time_s == 0.0 && speed[0] == 0.0 && matches!(event, Event::Close { .. }) {
-            let moves = self.moves(d, contact, time_s, change[0], [state[0], moved[0]]);
-            return if !moves { Ok((0.0, 0.0)) } else { Err(NoDerivative::Graze { contact, time_s }) };
+        // surfaces that touch at the start do so after any change that leaves their distance as it is
+        if time_s == 0.0 && matches!(event, Event::Close { .. }) {
+            match self.moves(d, contact, time_s, change[0], [state[0], moved[0]]) {
+                false => return Ok((0.0, speed[0])),
+                true if speed[0] == 0.0 => return Err(NoDerivative::Graze { contact, time_s }),
+                true => (),
+            }
         }
         let found = self.event_function(d, contact, event, overlap, change, speed);
         let (changes, slope) = found.ok_or(NoDerivative::Fork { contact, time_s })?;
