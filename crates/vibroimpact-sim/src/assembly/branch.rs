@@ -201,13 +201,17 @@ fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
     if turn < 0.0 {
         found.push(Special::Fold);
     }
-    let flips = |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| m[1] == 0.0 && m[0] < -1.0).count();
-    if flips(one) != flips(other) {
+    let change = |beyond: fn(&[f64; 2]) -> bool| {
+        let count = |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| beyond(m)).count();
+        count(one).abs_diff(count(other))
+    };
+    // two real multipliers beyond the same end of the circle may become a pair there, which passes nothing
+    let flips = change(|m| m[1] == 0.0 && m[0] < -1.0) % 2;
+    let turns = change(|m| m[1] == 0.0 && m[0] > 1.0) % 2;
+    if flips == 1 {
         found.push(Special::PeriodDoubling);
     }
-    let spirals =
-        |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| m[1] != 0.0 && m[0].hypot(m[1]) > 1.0).count();
-    if spirals(one) != spirals(other) && flips(one) == flips(other) {
+    if change(|m| m[0].hypot(m[1]) > 1.0) >= flips + turns + 2 {
         found.push(Special::NeimarkSacker);
     }
     if one.intervals_per_period != other.intervals_per_period {
@@ -523,12 +527,13 @@ where
         from: &BranchPoint,
         tangent: &DVector<f64>,
         step: f64,
-        kind: Special,
+        mut kind: Special,
         before_orbit: usize,
     ) -> Result<SpecialPoint, E> {
         let (mut low, mut high) = (0.0, step);
         let (mut below, mut above) = (from.parameter, f64::NAN);
         let mut orbit = from.orbit.clone();
+        let (mut before, mut after) = (from.orbit.clone(), None);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let Some(point) = self.step(from, tangent, middle)?.found() else { break };
@@ -539,12 +544,12 @@ where
             } else {
                 differences(&from.orbit, &point.orbit, 1.0).contains(&kind)
             };
-            if passed {
-                (high, above) = (middle, point.parameter);
-            } else {
-                (low, below) = (middle, point.parameter);
-            }
             orbit = point.orbit;
+            if passed {
+                (high, above, after) = (middle, point.parameter, Some(orbit.clone()));
+            } else {
+                (low, below, before) = (middle, point.parameter, orbit.clone());
+            }
             if (above - below).abs() <= 1e-8 * self.range().abs() {
                 break;
             }
@@ -552,7 +557,59 @@ where
         if above.is_nan() {
             above = self.step(from, tangent, high)?.found().map_or(below, |point| point.parameter);
         }
+        // two multipliers that pass -1 one after the other count as a pair until the second of them is located
+        let doubles =
+            |after: &Orbit| differences(&before, after, 1.0).iter().all(|kind| *kind == Special::PeriodDoubling);
+        if kind == Special::NeimarkSacker && after.as_ref().is_some_and(doubles) {
+            kind = Special::PeriodDoubling;
+        }
         let (parameter, uncertainty) = (0.5 * (below + above), 0.5 * (above - below).abs());
         Ok(SpecialPoint { kind, parameter, uncertainty, before_orbit, orbit })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn between(one: &[[f64; 2]], other: &[[f64; 2]]) -> Vec<Special> {
+        let orbit = |multipliers: &[[f64; 2]]| Orbit {
+            period_s: 1.0,
+            forcing_periods: 1,
+            phase_s: 0.0,
+            state: Vec::new(),
+            closure: 0.0,
+            floquet_multipliers: multipliers.to_vec(),
+            stable: false,
+            intervals_per_period: vec![1],
+            sides: Vec::new(),
+            section_m: Vec::new(),
+            iterations: 0,
+        };
+        differences(&orbit(one), &orbit(other), 1.0)
+    }
+
+    /// Multipliers that meet beyond the unit circle, or leave the real axis there, pass nothing.
+    #[test]
+    fn only_multipliers_that_pass_the_unit_circle_make_a_special_point() {
+        const INSIDE: [f64; 2] = [0.2, 0.0];
+        let pair = |re: f64, im: f64| vec![[re, im], [re, -im], INSIDE];
+        let real = |one: f64, other: f64| vec![[one, 0.0], [other, 0.0], INSIDE];
+        let cases = [
+            (pair(-1.551, 0.394), real(-1.605, -1.539), vec![]),
+            (pair(1.5, 0.1), real(1.6, 1.4), vec![]),
+            (pair(-0.9, 0.1), real(-0.9, -0.8), vec![]),
+            (real(-0.9, -0.8), real(-1.1, -0.8), vec![Special::PeriodDoubling]),
+            // a pair becomes two beyond -1, one of which then enters the circle
+            (pair(-1.19, 0.28), real(-2.05, -0.88), vec![Special::PeriodDoubling]),
+            (pair(-0.6, 0.7), pair(-0.6, 0.9), vec![Special::NeimarkSacker]),
+            // a pair leaves the circle and becomes two real ones
+            (pair(-0.9, 0.1), real(-1.2, -1.1), vec![Special::NeimarkSacker]),
+            (real(1.1, 0.5), real(0.9, 0.5), vec![]),
+        ];
+        for (one, other, expected) in cases {
+            assert_eq!(between(&one, &other), expected, "{one:?} {other:?}");
+            assert_eq!(between(&other, &one), expected, "{other:?} {one:?}");
+        }
     }
 }
