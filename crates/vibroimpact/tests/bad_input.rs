@@ -540,6 +540,7 @@ fn errors_name_the_field_that_has_to_change() {
             "striker.speed_m_s = 1e-300 is not allowed; it must be 0, or a number from 1e-60",
         ),
         (&["emoc", "heavy.json"], "striker.mass_kg = 1.79e+308 is not allowed; it must be such that Z"),
+        (&["simulate", "scene.json", "--until", "-1e-3"], "invalid value '-1e-3' for '--until <SECONDS>'"),
         (&["simulate", "scene.json", "--intervals", "-1"], "invalid value '-1' for '--intervals <N>'"),
         (&["sweep", "axis.json", "--out", "o", "--threads", "-1"], "invalid value '-1' for '--threads <N>'"),
         (&["sweep", "axis.json", "--out", "o", "--shard", "-1/3"], "invalid value '-1/3' for '--shard <K/N>'"),

@@ -53,6 +53,18 @@ fn the_steady_motion_is_found_with_its_multipliers() {
     assert!(text.contains("stable") && text.contains("Floquet multipliers"), "{text}");
 }
 
+/// Numbers with a negative exponent are not taken for options.
+#[test]
+fn the_range_of_a_field_may_be_negative() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = rig(folder.path(), 1.0);
+    let range = ["--over", "loads[0].force_n", "--from", "-2e-1", "--to", "-1e-1"];
+    let printed = stdout(&run(folder.path(), &[&["orbit", &scene, "--json"], &range[..]].concat()));
+    let branch: Value = serde_json::from_str(&printed).unwrap();
+    let orbits = branch["orbits"].as_array().unwrap();
+    assert_eq!([orbits.first(), orbits.last()].map(|orbit| orbit.unwrap()["value"].as_f64()), [Some(-0.2), Some(-0.1)]);
+}
+
 /// The damper's motion is irregular for hundreds of periods before it converges to one of four periods. The masses of the second
 /// scene lose no energy, so that no transient converges. Whether a motion that is found from an irregular one is stable depends on
 /// rounding.

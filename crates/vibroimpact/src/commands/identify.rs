@@ -51,7 +51,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = super::whole(1..=MOST_STARTS), default_value_t = 4, allow_negative_numbers = true)]
     starts: usize,
     /// Probability with which an interval contains the true value of its field
-    #[arg(long, value_parser = super::real, default_value_t = 0.95, allow_negative_numbers = true)]
+    #[arg(long, value_parser = super::real, default_value_t = 0.95, allow_hyphen_values = true)]
     level: f64,
     /// Possible experiments (CSV), which are ranked by the information that they would give
     #[arg(long, value_name = "FILE")]

@@ -28,22 +28,22 @@ numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
 #[derive(Args)]
 pub struct Arguments {
     /// Restitution: speed of separation over speed of approach, from 0.001 to 1
-    #[arg(long, value_parser = super::real, allow_negative_numbers = true)]
+    #[arg(long, value_parser = super::real, allow_hyphen_values = true)]
     restitution: f64,
     /// Mass of the striker
-    #[arg(long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = positive, allow_hyphen_values = true)]
     mass_kg: f64,
     /// Mass of the other body; without it that body is immovable
-    #[arg(long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = positive, allow_hyphen_values = true)]
     other_mass_kg: Option<f64>,
     /// Speed of approach
-    #[arg(long, value_name = "M/S", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M/S", value_parser = positive, allow_hyphen_values = true)]
     speed_m_s: f64,
     /// Largest compression; default: the distance covered in six steps, or a millimetre without a step
-    #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = positive, allow_hyphen_values = true)]
     compression_m: Option<f64>,
     /// Time step of an engine that steps by semi-implicit Euler
-    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     step_s: Option<f64>,
     /// Print only this law
     #[arg(long, value_enum)]

@@ -50,13 +50,13 @@ pub struct EmocArguments {
     #[command(flatten)]
     scene: SceneSource,
     /// Moderated mass ratio coefficient, not negative; default 1
-    #[arg(long, value_parser = real, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_hyphen_values = true)]
     mu0: Option<f64>,
     /// Modal richness coefficient, not negative; default 1
-    #[arg(long, value_parser = real, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_hyphen_values = true)]
     alpha0: Option<f64>,
     /// Slow response coefficient, not negative; default 1
-    #[arg(long, value_parser = real, allow_negative_numbers = true)]
+    #[arg(long, value_parser = real, allow_hyphen_values = true)]
     alpha1: Option<f64>,
     /// Number of modes in the law; default: that of the scene
     #[arg(long, value_name = "N", value_parser = whole(1..=MOST_MODES), allow_negative_numbers = true)]

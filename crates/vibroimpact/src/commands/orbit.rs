@@ -52,13 +52,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD", requires = "to")]
     over: Option<String>,
     /// First value of the field; default: that of the scene
-    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_negative_numbers = true)]
+    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_hyphen_values = true)]
     from: Option<f64>,
     /// Value towards which the branch is followed
-    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_negative_numbers = true)]
+    #[arg(long, value_name = "VALUE", requires = "over", value_parser = super::real, allow_hyphen_values = true)]
     to: Option<f64>,
     /// First step, as a fraction of the range
-    #[arg(long, value_name = "PART", requires = "over", value_parser = super::real, default_value_t = 0.02, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", requires = "over", value_parser = super::real, default_value_t = 0.02, allow_hyphen_values = true)]
     step: f64,
     /// How often to follow the branches of twice the period that begin at period doublings: 1 for those of the branch itself,
     /// 2 also for theirs, and so on

@@ -54,7 +54,7 @@ pub struct Extent {
     #[arg(long, value_name = "FILE", value_parser = svg_file)]
     animate: Option<PathBuf>,
     /// Time at which histories and pictures end, from the start of the impact; default: a little after the last contact, or after a period of the slowest vibration if there is none
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     until: Option<f64>,
     /// Largest number of intervals of contact that are listed for a scene of bodies; the files contain all
     #[arg(long, value_name = "N", value_parser = super::whole(0..=usize::MAX), default_value_t = MOST_INTERVALS, allow_negative_numbers = true)]
