@@ -27,6 +27,11 @@ pub enum Stop {
         /// Time of the step.
         t: f64,
     },
+    /// Solution or density vary faster after this time than the shortest panel resolves, as next to a start like `t^0.01`.
+    Unresolved {
+        /// Start of the panel.
+        t: f64,
+    },
     /// The largest number of panels was used up before the final time.
     PanelLimit {
         /// Time reached.
@@ -41,6 +46,7 @@ impl fmt::Display for Stop {
             Stop::Event { index } => write!(f, "terminal event {index}"),
             Stop::NonFinite { t } => write!(f, "a function is not finite at t = {t}"),
             Stop::NoConvergence { t } => write!(f, "Newton's method does not converge at t = {t}"),
+            Stop::Unresolved { t } => write!(f, "the shortest panel does not resolve the solution at t = {t}"),
             Stop::PanelLimit { t } => write!(f, "the limit of panels was reached at t = {t}"),
         }
     }

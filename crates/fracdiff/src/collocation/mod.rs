@@ -180,7 +180,7 @@ impl March<'_, '_, '_> {
                     let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-13 * reached };
                     // both are 0 on a segment whose parts underflow
                     if length <= smallest {
-                        let unresolved = Stop::NoConvergence { t: segment.start + reached };
+                        let unresolved = Stop::Unresolved { t: segment.start + reached };
                         let ahead = fault.filter(|f| f.time() >= segment.start + reached);
                         return Err(ahead.map_or(unresolved, Stop::from));
                     }
