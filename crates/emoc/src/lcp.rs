@@ -44,7 +44,8 @@ impl core::fmt::Display for Lcp {
 /// ```
 ///
 /// # Errors
-/// [`InvalidInput`] for a matrix whose size does not fit `q`, a number beyond 1e100 in magnitude, or a solution too large for a number.
+/// [`InvalidInput`] for a matrix whose size does not fit `q`, a number beyond 1e100 in magnitude, or a solution too large for a
+/// number.
 pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
     let n = q.len();
     require_finite("q", q, n)?;
@@ -98,9 +99,9 @@ pub fn newton_impact(problem: &Problem) -> Result<Option<Solution>, InvalidInput
 /// Dictionary `[ B^-1 | -B^-1 M | -B^-1 d | B^-1 q ]` of `w - M z - d z_0 = q`: columns `0..n` belong to `w`,
 /// `n..2n` to `z`, `2n` to the covering variable `z_0`, `2n + 1` to the right-hand side.
 ///
-/// The problem is that of `D M D` and `D q / unit`, whose solution is `D^-1 z / unit`: with a heavy and a light body an entry of `M` may be far smaller
-/// than others and still decide whether there is a solution. The covering vector `d` is of the size of `q`, so that no entry of `q` is
-/// lost in the sum `q + d z_0`.
+/// The problem is that of `D M D` and `D q / unit`, whose solution is `D^-1 z / unit`: with a heavy and a light body an entry of
+/// `M` may be far smaller than others and still decide whether there is a solution. The covering vector `d` is of the size of `q`,
+/// so that no entry of `q` is lost in the sum `q + d z_0`.
 struct Tableau {
     n: usize,
     rows: Vec<Vec<f64>>,
@@ -128,8 +129,8 @@ impl Tableau {
                 for j in 0..n {
                     row[n + j] = -scale[i] * m[i * n + j] * scale[j];
                 }
-                // z_0 enters in the row of the most negative q. In the others d is larger, by factors that differ from row to row, so that
-                // the entries of q + d z_0 are not all zero at once.
+                // z_0 enters in the row of the most negative q. In the others d is larger, by factors that differ from row to row,
+                // so that the entries of q + d z_0 are not all zero at once.
                 let beyond = if q[i] == -1.0 { 1.0 } else { 1.5 + (0.618 * i as f64) % 1.0 };
                 row[2 * n] = -beyond * q[i].abs().clamp(least, 1.0);
                 row[2 * n + 1] = q[i];
@@ -231,8 +232,8 @@ impl Tableau {
     }
 }
 
-/// Factors `D` by which the largest entry of each row and column of `D M D` is near 1 (Ruiz 2001), as powers of 2, which round nothing.
-/// A row and column of zeros keep theirs.
+/// Factors `D` by which the largest entry of each row and column of `D M D` is near 1 (Ruiz 2001), as powers of 2, which round
+/// nothing. A row and column of zeros keep theirs.
 fn balance(m: &[f64], n: usize) -> Vec<f64> {
     let mut scale = vec![1.0; n];
     for _ in 0..SWEEPS {

@@ -32,9 +32,9 @@ impl Rule {
         Rule::from_pairs(rule.as_node_weight_pairs(), 1.0)
     }
 
-    /// A rule for the same mean, `0 < order < 1`, with the nodes of Gauss and Legendre, of which none is as near to 0 as those of Gauss and
-    /// Jacobi for a small order. It is exact for polynomials below the degree `count`, by the means `(1-p)/(1+p) (2-p)/(2+p) ...` of the
-    /// Legendre polynomials.
+    /// A rule for the same mean, `0 < order < 1`, with the nodes of Gauss and Legendre, of which none is as near to 0 as those of
+    /// Gauss and Jacobi for a small order. It is exact for polynomials below the degree `count`, by the means of the Legendre
+    /// polynomials, `(1-p)/(1+p) (2-p)/(2+p) ...` at the order `p`.
     pub fn product(count: usize, order: f64) -> Rule {
         let mut rule = Rule::legendre(count);
         for (u, weight) in rule.nodes.iter().zip(&mut rule.weights) {

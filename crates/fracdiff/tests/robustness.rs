@@ -231,7 +231,8 @@ fn the_longest_interval_ends() {
     }
 }
 
-/// `E_0.01(-0.9 t^0.01)` falls from 0.92 at `t = 1e-100` to 0.53 at 1. No panel resolves this, although Newton's method converges on each.
+/// `E_0.01(-0.9 t^0.01)` falls from 0.92 at `t = 1e-100` to 0.53 at 1. No panel resolves this, although Newton's method converges
+/// on each.
 #[test]
 fn a_start_that_no_panel_resolves_is_named() {
     let problem = InitialValueProblem::new(vec![Equation::new(0.01, &[1.0])], |_, y, f| f[0] = -0.9 * y[0]);

@@ -43,9 +43,10 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
     }
 }
 
-/// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1, otherwise NaN):
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`, and for many degrees of freedom an expansion about the normal variable. The degrees
-/// of freedom are at least 1 and need not be an integer. `None` stands for a known standard deviation, that is the normal variable.
+/// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1, otherwise
+/// NaN): `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`, and for many degrees of freedom an expansion about the normal variable.
+/// The degrees of freedom are at least 1 and need not be an integer. `None` stands for a known standard deviation, that is the
+/// normal variable.
 ///
 /// ```
 /// assert!((fitting::two_sided_quantile(0.95, None) - 1.959964).abs() < 1e-6);

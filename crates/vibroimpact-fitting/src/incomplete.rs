@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 
 /// Terms of a series or of a continued fraction: near its steepest point they are some multiple of the root of the parameters.
 const MOST_TERMS: usize = 1_000_000;
-/// Parameter of the gamma function from which on an expansion about the normal distribution is exact to rounding; the logarithms of larger
-/// factors lose digits.
+/// Parameter of the gamma function from which on an expansion about the normal distribution is exact to rounding; the logarithms of
+/// larger factors lose digits.
 const MANY: f64 = 1e6;
 /// The smallest number by which a continued fraction divides.
 const LEAST: f64 = 1e-300;
@@ -41,8 +41,8 @@ pub(crate) fn upper_gamma(a: f64, x: f64) -> f64 {
     (factor / continued(first, rest)).clamp(0.0, 1.0)
 }
 
-/// `I_x(a, b)`, the integral of `t^(a-1) (1-t)^(b-1)` from 0 to `x` (0 to 1) over that to 1. Its argument `rest` is `1 - x`, which has more
-/// digits than the difference if `x` is near 1.
+/// `I_x(a, b)`, the integral of `t^(a-1) (1-t)^(b-1)` from 0 to `x` (0 to 1) over that to 1. Its argument `rest` is `1 - x`, which
+/// has more digits than the difference if `x` is near 1.
 pub(crate) fn lower_beta(a: f64, b: f64, x: f64, rest: f64) -> f64 {
     if x <= 0.0 || rest <= 0.0 {
         return x;

@@ -35,9 +35,9 @@ impl Quadrature {
     }
 }
 
-/// A value with its estimated error: the difference between two rules and the rounding of the values of the function, which are taken
-/// to be correct to the last bit. Where the rules converge slowly, as for a function that is not smooth, the estimate follows from how
-/// their differences decrease.
+/// A value with its estimated error: the difference between two rules and the rounding of the values of the function, which are
+/// taken to be correct to the last bit. Where the rules converge slowly, as for a function that is not smooth, the estimate follows
+/// from how their differences decrease.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -156,7 +156,8 @@ fn finite(value: f64, t: f64) -> Result<f64, InvalidInput> {
     if value.is_finite() { Ok(value) } else { Err(InvalidInput::new(format!("f({t})"), value, "a finite value")) }
 }
 
-/// `order int_0^t (t-s)^(order-1) f(s, t-s) ds` with rules of 8, 16, ... 256 nodes until two agree. `f` gives a value and its rounding.
+/// `order int_0^t (t-s)^(order-1) f(s, t-s) ds` with rules of 8, 16, ... 256 nodes until two agree. `f` gives a value and its
+/// rounding.
 fn weighted(
     order: f64,
     rule: impl Fn(usize) -> Rule,

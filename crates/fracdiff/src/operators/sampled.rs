@@ -158,7 +158,8 @@ fn power_integral(far: f64, near: f64, p: f64) -> f64 {
 fn ramp_integral(far: f64, near: f64, p: f64) -> f64 {
     let h = far - near;
     if near > 20.0 * h {
-        // Far away the two terms below cancel: the binomial series of (1 + v/near)^(p-1) with v = u - near, integrated term by term.
+        // Far away the two terms below cancel: the binomial series of (1 + v/near)^(p-1) with v = u - near, integrated term by
+        // term.
         let (mut coefficient, mut sum, mut k) = (1.0, 0.0, 0.0);
         while f64::abs(coefficient) > 1e-17 {
             sum += coefficient / (k + 2.0);
