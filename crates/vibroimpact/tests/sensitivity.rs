@@ -595,6 +595,22 @@ fn derivatives_at_a_touch_at_the_start_hold_on_one_side() {
     assert!(output(&arguments(&[])).contains("Derivatives by contacts[0].gap_m hold for an increase of it"));
 }
 
+/// A ball that rests on the floor presses it at once if it moves downwards. If it moves upwards, it comes back later.
+#[test]
+fn derivatives_by_the_speed_of_a_body_at_rest_hold_on_one_side() {
+    let tree = json!({
+        "bodies": { "ball": { "kind": "mass", "mass_kg": 1 } },
+        "contacts": [{ "name": "c", "between": [{ "body": "ball" }, "ground"], "law": "hertz", "stiffness_n_m1_5": 1e6 }],
+        "gravity_m_s2": 9.81,
+        "end_s": 0.01,
+    });
+    let fields = ["bodies.ball.velocity_m_s", "bodies.ball.mass_kg"].map(str::to_owned);
+    let found = AssemblyScene::from_value(&tree).unwrap().sensitivity(&fields).unwrap();
+    let approach = found.table.of("contacts.c.intervals[0].approach_speed_m_s", &fields[0]).unwrap();
+    assert!((approach.value + 1.0).abs() < 1e-9, "{approach:?}");
+    assert_eq!(found.table.fields.iter().map(|field| field.holds_for).collect::<Vec<_>>(), [Some("decrease"), None]);
+}
+
 /// The gap is that between the surfaces at the start, so that they touch there whatever the structure is displaced by: what rounding
 /// leaves of the change of their distance is none.
 #[test]

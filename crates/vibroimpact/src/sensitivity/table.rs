@@ -47,13 +47,16 @@ pub struct Field {
     /// Its value in the scene.
     pub value: f64,
     /// `increase` or `decrease`, if the derivatives hold for such a change alone, or `neither`; null if they hold for both. A contact
-    /// that touches at the start can only touch later: otherwise its surfaces would overlap at the start.
+    /// that touches at the start can only touch later: otherwise its surfaces would overlap at the start. One that touches there without
+    /// speed can only touch with one, or later.
     pub holds_for: Option<&'static str>,
 }
 
-/// For which changes of a field a contact that touches at the start touches later.
+/// For which changes of a field a contact that touches at the start touches later, or one that touches without speed has one: neither
+/// a time nor a speed of approach is ever negative.
 fn holds_for(derivatives: &[Output]) -> Option<&'static str> {
-    let at_start = |output: &&Output| output.value == 0.0 && output.name.ends_with("[0].start_s");
+    let first = |name: &str| name.ends_with("[0].start_s") || name.ends_with("[0].approach_speed_m_s");
+    let at_start = |output: &&Output| output.value == 0.0 && first(&output.name);
     let later = |output: &Output| {
         let Derivative { value, uncertainty } = output.derivative;
         if value.abs() <= uncertainty.unwrap_or(0.0) { 0.0 } else { value.signum() }

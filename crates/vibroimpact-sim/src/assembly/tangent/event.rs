@@ -41,16 +41,18 @@ impl Walk<'_> {
         if rate.abs() <= 4.0 * f64::EPSILON * (link.size(modes) + by_loads.abs()) { 0.0 } else { rate }
     }
 
-    /// Sum of the sizes of the parts of the change of an overlap.
-    fn parts(&self, d: usize, c: usize, time_s: f64, amplitude: &[f64], change: &[f64]) -> f64 {
-        let by_loads = self.load_changes[d].as_ref().map_or(0.0, |loads| loads.overlap(c, time_s)[0]);
-        let by_shapes: f64 = self.changes[d].psi[c].iter().map(|span| span.size(amplitude)).sum();
-        self.tangents[d].contacts[c].reference.abs() + self.system.links[c].size(change) + by_loads.abs() + by_shapes
+    /// Sum of the sizes of the parts of the change of an overlap (`order` 0) or of its rate (1), for the amplitudes of the modes or for
+    /// their rates.
+    fn parts(&self, d: usize, c: usize, order: usize, time_s: f64, [modes, change]: [&[f64]; 2]) -> f64 {
+        let by_loads = self.load_changes[d].as_ref().map_or(0.0, |loads| loads.overlap(c, time_s)[order]);
+        let by_shapes: f64 = self.changes[d].psi[c].iter().map(|span| span.size(modes)).sum();
+        let reference = if order == 0 { self.tangents[d].contacts[c].reference.abs() } else { 0.0 };
+        reference + self.system.links[c].size(change) + by_loads.abs() + by_shapes
     }
 
     /// Whether a change of an overlap is more than none.
-    pub fn moves(&self, d: usize, c: usize, time_s: f64, change: f64, [amplitude, moved]: [&[f64]; 2]) -> bool {
-        change.abs() > UNCHANGED * self.parts(d, c, time_s, amplitude, moved)
+    pub fn moves(&self, d: usize, c: usize, time_s: f64, change: f64, amplitudes: [&[f64]; 2]) -> bool {
+        change.abs() > UNCHANGED * self.parts(d, c, 0, time_s, amplitudes)
     }
 
     /// The contacts that touch without speed and without force, and whose law has a force of first order in the overlap or its rate. Such
@@ -243,7 +245,12 @@ impl Walk<'_> {
             let tangent = &self.tangents[d];
             let carried = tangent.contacts[c];
             let at_first = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
-            let [by_overlap, by_rate] = array::from_fn(|i| at_first[i] + apart[d] * speed[i]);
+            let [by_overlap, mut by_rate] = array::from_fn(|i| at_first[i] + apart[d] * speed[i]);
+            // surfaces that rest against each other at the start still do if the parts of this change cancel
+            let rests = at_s == 0.0 && rate == 0.0;
+            if rests && by_rate.abs() <= UNCHANGED * self.parts(d, c, 1, at_s, [state[1], &tangent.rate]) {
+                by_rate = 0.0;
+            }
             let changes: Given = match event {
                 Event::Cross(_) => join(carried.branch, [by_overlap, by_rate]),
                 Event::Close { .. } => join(carried.memory, [by_rate, 0.0]),
