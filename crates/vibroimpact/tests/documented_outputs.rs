@@ -136,6 +136,31 @@ fn every_key_and_column_of_an_orbit_is_documented() {
     columns(&folder.path().join("branch.csv"), &text, &ours);
 }
 
+/// The examples of the page, with as few points as show that every one of them can be solved.
+#[test]
+fn the_sweeps_of_the_page_solve_every_point() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = fs::read_to_string(format!("{ROOT}/docs/sweeps.md")).unwrap();
+    let blocks: Vec<&str> = page.split("```json\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert_eq!(blocks.len(), 2);
+    for (number, block) in blocks.into_iter().enumerate() {
+        let mut sweep: Value = serde_json::from_str(block).unwrap();
+        sweep["scene_file"] = json!(dataset("scenes/pinned-beam.json"));
+        let axes = sweep.get_mut("vary").and_then(Value::as_array_mut);
+        let counts = axes.into_iter().flatten().filter_map(|axis| axis.get_mut("count"));
+        counts.for_each(|count| *count = json!(2));
+        for (draws, least) in [("/random/draws", 1), ("/sampling/draws", 160)] {
+            if let Some(draws) = sweep.pointer_mut(draws) {
+                *draws = json!(least);
+            }
+        }
+        fs::write(folder.path().join("sweep.json"), sweep.to_string()).unwrap();
+        let printed = run(folder.path(), &["sweep", "sweep.json", "--out", &number.to_string(), "--json"]);
+        let summary: Value = serde_json::from_str(&stdout(&printed)).unwrap();
+        assert_eq!(summary["failures"], 0, "{block}");
+    }
+}
+
 #[test]
 fn every_key_and_column_of_a_sweep_is_documented() {
     let folder = tempfile::tempdir().unwrap();
