@@ -693,6 +693,9 @@ class Scene(Part):
     ``striker``: The striker.
     ``contact``: The law of the contact.
     ``description``: A text for the reader; may be left out.
+    ``gravity_m_s2``: Acceleration of gravity (m/s^2) for a striker that falls on the structure; 0 when left out. The impact
+        then ends with the first flight that rises above the undeflected structure by more than a hundredth of the height of
+        the fall, and the restitution is that of a drop test.
     ``location``: Name of the point that is struck. Required for a modal structure with named points; other structures have
         none.
     ``location_m``: Location of the impact (m): from the left end of a beam or string; on a plate two numbers, ``[x, y]``
@@ -713,6 +716,7 @@ class Scene(Part):
     striker: Striker
     contact: Contact
     description: str | None = None
+    gravity_m_s2: float | None = None
     location: str | None = None
     location_m: float | Sequence[float] | NDArray[np.float64] | None = None
     model: Literal["auto", "rigid", "infinite-beam", "modal", "emoc"] | None = None

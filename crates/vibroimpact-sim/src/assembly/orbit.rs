@@ -104,7 +104,7 @@ pub struct Orbit {
     pub floquet_multipliers: Vec<[f64; 2]>,
     /// Whether no multiplier lies outside the unit circle.
     pub stable: bool,
-    /// Intervals of contact that begin within a period, contact by contact.
+    /// Intervals of contact that begin within a period, contact by contact; 1 for a contact that stays closed.
     pub intervals_per_period: Vec<u64>,
     /// Motion of both sides of every contact.
     pub sides: Vec<[SideMotion; 2]>,

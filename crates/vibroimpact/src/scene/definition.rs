@@ -49,7 +49,7 @@ pub struct Scene {
     pub start: Option<Start>,
     /// Acceleration of gravity (m/s^2) for a striker that falls on the structure; 0 when left out. The impact then ends with the first
     /// flight that rises above the undeflected structure by more than a hundredth of the height of the fall, and the restitution is that
-    /// of a drop test, see [`vibroimpact_sim::modal::Solver::under_gravity`].
+    /// of a drop test.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub gravity_m_s2: f64,
     /// Requested accuracy of the restitution. When left out: 1e-3, which includes truncation, where the program chooses the
