@@ -2,7 +2,7 @@
 
 use crate::common::random::{Impact, config, ordinary_impact};
 use crate::common::{ball, hertz, pinned, second_method_under, settings};
-use contact_models::{KelvinVoigt, Law};
+use contact_models::{KelvinVoigt, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
@@ -122,6 +122,26 @@ fn a_striker_that_hardly_rises_stays() {
     // in a dashpot, at once
     let damped = KelvinVoigt::new(1e5, 1e5).unwrap().into();
     let found = falls(&Structure::default(), &heavy, &damped, None, 1e-9);
+    assert_eq!((found.outcome, found.restitution), (Outcome::Sustained, Some(0.0)));
+}
+
+/// A slow ball stays on a soft support for nearly a whole vibration under its weight, far longer than it flies, and loses nothing.
+#[test]
+fn a_rebound_from_a_soft_support_is_awaited() {
+    let slow = Striker { mass_kg: 1.0, speed_m_s: 0.02 };
+    // on a light plate on a spring of 400 N/m, by a hard contact, and on a soft contact with a rigid structure
+    let light = Structure { modes: vec![Mode { omega_rad_s: 2e3, damping_ratio: 0.0, shape: 100.0 }] };
+    let spring = LinearSpring::new(400.0).unwrap().into();
+    for (structure, law) in [(&light, &hertz()), (&Structure::default(), &spring)] {
+        let found = falls(structure, &slow, law, None, 1e-9);
+        let interval_s = found.sub_impacts.iter().map(|contact| contact.end_s - contact.start_s).sum::<f64>();
+        assert_eq!(found.outcome, Outcome::Rebound, "{found:?}");
+        assert!((found.restitution.unwrap() - 1.0).abs() < 1e-3, "{found:?}");
+        assert!(interval_s > 20.0 * slow.speed_m_s / GRAVITY_M_S2, "{found:?}");
+    }
+    // with losses it stays
+    let damped = KelvinVoigt::new(400.0, 4.0).unwrap().into();
+    let found = falls(&Structure::default(), &slow, &damped, None, 1e-9);
     assert_eq!((found.outcome, found.restitution), (Outcome::Sustained, Some(0.0)));
 }
 

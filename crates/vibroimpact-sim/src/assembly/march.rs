@@ -45,7 +45,11 @@ impl<'a> March<'a> {
                 break Outcome::Stopped(reason);
             }
             if self.time_s >= self.settings.end_s {
-                break Outcome::End;
+                if !self.waits() {
+                    break Outcome::End;
+                }
+                // until the contact has opened (`transition.rs`)
+                self.settings.end_s = f64::INFINITY;
             }
             if self.time_s >= self.loads.next_break_s() {
                 self.pass_break();
@@ -71,6 +75,11 @@ impl<'a> March<'a> {
             }
         }
         outcome
+    }
+
+    /// Whether the first interval of contact lasts, in a run that waits for a flight of some height.
+    fn waits(&self) -> bool {
+        self.settings.over_above_m < f64::INFINITY && self.intervals == 0 && self.states.iter().any(State::is_closed)
     }
 
     /// Passes a break of the loads.

@@ -148,7 +148,8 @@ pub struct Settings {
     pub stop_when_over: bool,
     /// With that, one contact, and constant loads that press its first side onto the second, as a ball is by its weight: end the run in
     /// the same way at the first separation after which this side turns round where it is displaced by more than this (m), which
-    /// may be negative. Default infinity.
+    /// may be negative. A run that waits for it does not end during the first interval of contact, or before four times its duration
+    /// have passed since. Default infinity.
     pub over_above_m: f64,
     /// Rest is not checked before this time (s). Default 0.
     pub rest_from_s: f64,

@@ -18,6 +18,8 @@ const ALIKE: f64 = 1e-3;
 
 /// Largest number of boundaries that a contact passes as it begins.
 const MOST_PASSED: usize = 16;
+/// A run that waits for a flight of some height goes on for this many times the duration of its first interval of contact.
+const WAITED: f64 = 4.0;
 
 /// The branch on which fresh surfaces are that overlap at the start; `None` if they separate at once.
 pub(super) fn branch_at_start(law: &dyn ContactLaw, overlap: f64, rate: f64) -> Option<Branch> {
@@ -230,7 +232,8 @@ impl<'a> March<'a> {
                 let (overlap, _) = self.overlap_of_modes(c);
                 let (now, rate) = (self.time_s, self.states[c].rate);
                 // surfaces that part where they have met, under the forces of other contacts, were not in contact
-                let lasted = contact.interval.start_s < now;
+                let interval_s = now - contact.interval.start_s;
+                let lasted = interval_s > 0.0;
                 if lasted && let Some(interval) = self.states[c].finish(law, Some((now, rate))) {
                     self.observer.interval(c, &interval);
                     self.intervals += 1;
@@ -245,6 +248,7 @@ impl<'a> March<'a> {
                 self.discard_predictions();
                 self.depart();
                 self.turns_at_s = self.turns_at_s();
+                self.wait_after(interval_s);
                 self.event(c, Event::Cross(crossing.boundary));
             }
         }
@@ -269,6 +273,14 @@ impl<'a> March<'a> {
         let pressed = self.loads.acceleration(0, self.time_s);
         let turns = rate > 0.0 && pressed > 0.0 && displacement + rate * rate / (2.0 * pressed) > level;
         if turns { self.time_s + rate / pressed } else { f64::INFINITY }
+    }
+
+    /// A run that waits for a flight of some height goes on for some time after its first interval of contact, of this duration (s).
+    fn wait_after(&mut self, interval_s: f64) {
+        if self.settings.over_above_m < f64::INFINITY && self.intervals == 1 {
+            let (end_s, after_s) = (self.settings.end_s, self.time_s + WAITED * interval_s);
+            self.settings.end_s = if end_s.is_finite() { end_s.max(after_s) } else { after_s };
+        }
     }
 
     fn event(&mut self, c: usize, event: Event) {

@@ -16,18 +16,21 @@
 //! e = sqrt(v_s^2 + 2 g h_s)/v.
 //! ```
 //!
-//! If there is no such flight within the time of four rebounds without losses, `8 v/g`, the striker stays on the structure: `e = 0`.
+//! If there is no such flight for the time of four rebounds without losses, `8 v/g`, and of four vibrations of the structure with the
+//! striker, the striker stays on it: `e = 0`. The latter have at most the period `2 pi sqrt(sum 1/omega_k^2 + m sum phi_k^2/omega_k^2)`
+//! (Dunkerley 1894). A soft contact may last longer; the search does not end during the first one, or for four times its duration.
 
 use super::posed::STRIKER;
 use super::problem::{Mode, SCALE_MIN, SPEED_MIN, Start, Striker, arrives_m_s, height_m};
 use crate::assembly::problem::SCALE_MAX;
 use crate::assembly::{Force, Load};
 use invalid_input::InvalidInput;
+use std::f64::consts::TAU;
 
 /// Least height of a rebound, as a share of that of the fall.
 const LEAST_RISE: f64 = 0.01;
-/// The search for the rebound ends this many times `v/g` after the first touch.
-const DURATION: f64 = 8.0;
+/// The search for the rebound ends after so many rebounds without losses, and so many of the slowest vibrations.
+const WAITED: f64 = 4.0;
 
 /// A fall under gravity.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +41,8 @@ pub(crate) struct Fall {
     /// Speed of the striker at the start (m/s).
     speed_m_s: f64,
     mass_kg: f64,
+    /// The longest period of the structure with the striker, at most (s).
+    slowest_s: f64,
 }
 
 /// Checks an acceleration of gravity.
@@ -65,7 +70,11 @@ impl Fall {
         let held = !modes.iter().any(|mode| mode.is_rigid() && mode.is_moved());
         require(held, "0, because the structure is not held and would fall as well")?;
         let Striker { mass_kg, speed_m_s } = *striker;
-        let fall = Fall { gravity_m_s2, height_m: height_m(modes, start), speed_m_s, mass_kg };
+        let vibrating = modes.iter().filter(|mode| mode.is_moved());
+        let square_s2: f64 =
+            vibrating.map(|mode| (1.0 + mass_kg * mode.shape * mode.shape) / mode.omega_rad_s.powi(2)).sum();
+        let slowest_s = TAU * square_s2.sqrt();
+        let fall = Fall { gravity_m_s2, height_m: height_m(modes, start), speed_m_s, mass_kg, slowest_s };
         require(fall.arrives_m_s() >= SPEED_MIN, "0, because the striker does not fall: it touches the structure")?;
         Ok(Some(fall))
     }
@@ -89,7 +98,8 @@ impl Fall {
     /// Time at which the search for a rebound ends (s).
     pub fn end_s(&self) -> f64 {
         let speed = self.arrives_m_s();
-        (speed - self.speed_m_s + DURATION * speed) / self.gravity_m_s2
+        let rebound_s = 2.0 * speed / self.gravity_m_s2;
+        (speed - self.speed_m_s) / self.gravity_m_s2 + WAITED * (rebound_s + self.slowest_s)
     }
 
     /// Restitution of a rebound that begins with this displacement and velocity of the striker.

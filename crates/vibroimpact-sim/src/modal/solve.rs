@@ -153,7 +153,8 @@ impl Solver {
     /// The same for strikers that fall on the structure, in the direction of their speed. Each impact ends with the first flight that
     /// rises above the undeflected structure by more than a hundredth of the height of the fall. The restitution is that of a drop test:
     /// the speed that belongs to the height of this rebound, over the speed of impact. It is 0, and the contact sustained, if there is no
-    /// such flight within `8 v/g`. 0 leaves gravity out, as by default.
+    /// such flight for the time of four rebounds without losses and of four of the slowest vibrations, nor for four times the duration of
+    /// the first contact. 0 leaves gravity out, as by default.
     ///
     /// # Errors
     /// If the acceleration of gravity (m/s^2) is neither 0 nor from 1e-30 to 1e30. An impact under gravity is refused if the striker is
