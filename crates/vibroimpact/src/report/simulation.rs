@@ -309,7 +309,7 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
             rows.push(row(&name, quantity(summary.striker_velocity_m_s, "m/s")));
         }
     }
-    if let Some(rise_m) = summary.rise_m {
+    if let Some(rise_m) = summary.rise_m.filter(|rise_m| *rise_m > 0.0) {
         rows.push(row("height of the rebound", quantity(rise_m, "m")));
     }
     rows.push(row("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s"))));

@@ -111,7 +111,7 @@ pub fn result(summary: &Summary) -> String {
         None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}
         None => line(&format!("striker {leaves} at"), quantity(summary.striker_velocity_m_s, "m/s")),
     }
-    if let Some(rise_m) = summary.rise_m {
+    if let Some(rise_m) = summary.rise_m.filter(|rise_m| *rise_m > 0.0) {
         line("and rises to", quantity(rise_m, "m"));
     }
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
