@@ -75,7 +75,8 @@ impl Fall {
             vibrating.map(|mode| (1.0 + mass_kg * mode.shape * mode.shape) / mode.omega_rad_s.powi(2)).sum();
         let slowest_s = TAU * square_s2.sqrt();
         let fall = Fall { gravity_m_s2, height_m: height_m(modes, start), speed_m_s, mass_kg, slowest_s };
-        require(fall.arrives_m_s() >= SPEED_MIN, "0, because the striker does not fall: it touches the structure")?;
+        let falls = (speed_m_s > 0.0 || fall.height_m > 0.0) && fall.arrives_m_s() >= SPEED_MIN;
+        require(falls, "0, because the striker touches the structure and does not move towards it")?;
         Ok(Some(fall))
     }
 
