@@ -171,28 +171,46 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {
         return stated::stated(pose.scene, pose.kept, cost);
     }
-    for model in CHEAPER {
-        if let Ok(choice) = certified_tier(model, pose, cost)? {
+    for cheaper in CHEAPER {
+        if let Ok(choice) = cheaper.certified(pose, cost)? {
             return Ok(choice);
         }
     }
     modal(pose, cost)
 }
 
-/// The models that cost less than the modal one, the cheapest first.
-pub(super) const CHEAPER: [Model; 3] = [Model::Rigid, Model::Emoc, Model::InfiniteBeam];
-/// Why none of them is available for a striker that falls.
-const FALLS: &str = "gravity_m_s2 is stated, and this model leaves gravity out";
+/// Tries a model; the inner `Err` states why it is not available.
+type Try = fn(&mut Pose, &mut Cost) -> Tried;
 
-/// One of these models where it is certain to reach the tolerance; the inner `Err` states why it is not.
-pub(super) fn certified_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
-    match model {
-        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
-        _ if pose.scene.falls() => Ok(Err(FALLS.to_owned())),
-        Model::Rigid => rigid::certified(pose, cost),
-        Model::InfiniteBeam => infinite::certified(pose, cost),
-        Model::Emoc => super::emoc::certified(pose, cost),
+/// A model that costs less than the modal one.
+pub(super) struct Cheaper {
+    pub model: Model,
+    /// Where it is certain to reach the tolerance.
+    certified: Try,
+    /// Where it was requested.
+    forced: Try,
+}
+
+/// The cheapest first.
+pub(super) const CHEAPER: [Cheaper; 3] = [
+    Cheaper { model: Model::Rigid, certified: rigid::certified, forced: rigid::forced },
+    Cheaper { model: Model::Emoc, certified: super::emoc::certified, forced: super::emoc::forced },
+    Cheaper { model: Model::InfiniteBeam, certified: infinite::certified, forced: infinite::forced },
+];
+
+impl Cheaper {
+    /// Tries the model where it is certain to reach the tolerance.
+    pub fn certified(&self, pose: &mut Pose, cost: &mut Cost) -> Tried {
+        tried(self.certified, pose, cost)
     }
+}
+
+/// Tries a cheaper model, none of which considers gravity.
+fn tried(model: Try, pose: &mut Pose, cost: &mut Cost) -> Tried {
+    if pose.scene.falls() {
+        return Ok(Err("gravity_m_s2 is stated, and this model leaves gravity out".to_owned()));
+    }
+    model(pose, cost)
 }
 
 /// The modal problem with as many modes as the restitution needs to converge.
@@ -216,11 +234,8 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
 
 /// A model that was requested; the inner `Err` states why it is not available.
 pub(super) fn forced_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
-    match model {
-        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
-        _ if pose.scene.falls() => Ok(Err(FALLS.to_owned())),
-        Model::Rigid => rigid::forced(pose, cost),
-        Model::InfiniteBeam => infinite::forced(pose, cost),
-        Model::Emoc => super::emoc::forced(pose, cost),
+    match CHEAPER.into_iter().find(|cheaper| cheaper.model == model) {
+        Some(cheaper) => tried(cheaper.forced, pose, cost),
+        None => modal(pose, cost).map(Ok),
     }
 }

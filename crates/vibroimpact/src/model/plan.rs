@@ -14,7 +14,7 @@ use serde::Serialize;
 use vibroimpact_sim::modal::Settings;
 
 use super::choice::Choice;
-use super::choose::{CHEAPER, certified_tier, forced_tier, refused};
+use super::choose::{CHEAPER, Cheaper, forced_tier, refused};
 use super::guess::{fewer, guess};
 use super::pose::Pose;
 use super::theory::Found;
@@ -137,9 +137,9 @@ impl Scene {
         let (scene, why) = open.as_ref().map_or((self, None), |(scene, why)| (scene, Some(why)));
         let mut pose = Pose::new(scene, &mut kept)?;
         let mut tiers = Vec::new();
-        for model in CHEAPER {
-            let time_s = if model == Model::InfiniteBeam { INFINITE_S } else { FORMULA_S };
-            tiers.push(Estimate::tried(model, certified_tier(model, &mut pose, cost)?, time_s));
+        for cheaper in CHEAPER {
+            let time_s = if cheaper.model == Model::InfiniteBeam { INFINITE_S } else { FORMULA_S };
+            tiers.push(Estimate::tried(cheaper.model, cheaper.certified(&mut pose, cost)?, time_s));
         }
         let mut of_modes = modal(&mut pose, cost)?;
         if let Some(why) = why {
@@ -166,7 +166,7 @@ impl Scene {
             return Err(refused(self.model, format!("auto or modal, because {why}")));
         }
         let impact = self.impact_of(self.modes.count(), &mut Kept::default())?;
-        let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
+        let without = |cheaper: Cheaper| Estimate::tried(cheaper.model, Err(why.to_owned()), FORMULA_S);
         let mut tiers: Vec<Estimate> = CHEAPER.map(without).into();
         tiers.push(Estimate::of_stated(&impact)?);
         Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
