@@ -7,8 +7,8 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The striker left, and it is certain that the structure can never catch it again. Under gravity, the first flight of some height
-    /// ([`Solver::under_gravity`](crate::modal::Solver::under_gravity)).
+    /// The striker left, and it is certain that the structure can never catch it again. Under gravity, its first flight of some height
+    /// has begun ([`Solver::under_gravity`](crate::modal::Solver::under_gravity)).
     Rebound,
     /// The bodies never met.
     NoContact,

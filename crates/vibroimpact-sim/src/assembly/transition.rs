@@ -247,7 +247,7 @@ impl<'a> March<'a> {
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.discard_predictions();
                 self.depart();
-                self.turns_at_s = self.turns_at_s();
+                self.turns_at_s = self.time_of_turning_s();
                 self.wait_after(interval_s);
                 self.event(c, Event::Cross(crossing.boundary));
             }
@@ -264,7 +264,7 @@ impl<'a> March<'a> {
     }
 
     /// Time at which the first side of the only contact turns round, if it is displaced by enough then for the run to end (s).
-    fn turns_at_s(&self) -> f64 {
+    fn time_of_turning_s(&self) -> f64 {
         let level = self.settings.over_above_m;
         let [link] = &self.system.links[..] else { return f64::INFINITY };
         let Some(side) = link.sides[0].as_ref().filter(|_| level < f64::INFINITY) else { return f64::INFINITY };

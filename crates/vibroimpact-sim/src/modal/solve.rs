@@ -87,6 +87,12 @@ pub(crate) struct Lowered {
     pub system: System,
 }
 
+impl Lowered {
+    fn loads(&self) -> Loads {
+        Loads::new(&self.assembly.loads, &self.system)
+    }
+}
+
 /// One run at one tolerance.
 pub(crate) struct Run {
     pub outcome: Outcome,
@@ -244,7 +250,6 @@ impl Solver {
         let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
         let Solved { solution, run, lowered, fall, work_and_damping_j, .. } =
             solver.solve_into(striker, law, Some(&start), settings, Keep::Motion)?;
-        let loads = Loads::new(&lowered.assembly.loads, &lowered.system);
         Ok(Recording {
             solution,
             counts: run.counts,
@@ -256,7 +261,7 @@ impl Solver {
             tables: Arc::clone(solver.tables(&lowered.system, ANSWER)),
             work_and_damping_j,
             fall,
-            loads,
+            loads: lowered.loads(),
             system: lowered.system,
         })
     }
@@ -309,9 +314,8 @@ impl Solver {
         let (mut beside, mut run, work_and_damping_j) = if estimate_uncertainty && concurrent {
             let solve_and_book = || {
                 let run = solve(1.0, keep);
-                let Lowered { assembly, system } = &lowered;
-                let loads = || Loads::new(&assembly.loads, system);
-                let book = || work_and_damping_j(system, &loads(), &run.record, self.tables(system, ANSWER));
+                let system = &lowered.system;
+                let book = || work_and_damping_j(system, &lowered.loads(), &run.record, self.tables(system, ANSWER));
                 let booked = (keep == Keep::Motion).then(book);
                 (run, booked)
             };
