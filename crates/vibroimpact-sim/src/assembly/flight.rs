@@ -13,6 +13,7 @@ impl<'a> March<'a> {
     pub(super) fn fly(&mut self) -> bool {
         self.counts.flight_steps += 1;
         if self.time_s >= self.turns_at_s {
+            self.until_touch_s = self.time_until_touch_s();
             return self.go_back_to_separation();
         }
         let lasting = self.lasting();
@@ -66,6 +67,13 @@ impl<'a> March<'a> {
             }
         }
         false
+    }
+
+    /// Time until the only contact closes if its gap closes as fast as now; infinite if it does not (s).
+    fn time_until_touch_s(&self) -> f64 {
+        let (overlap, rate) = self.overlap_of_modes(0);
+        let gap = (self.states[0].touch_m() - overlap).max(0.0);
+        if rate > 0.0 { gap / rate } else { f64::INFINITY }
     }
 
     /// Ends the run at the last separation.

@@ -69,6 +69,8 @@ pub(crate) struct March<'a> {
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Time at which the present flight ends the run, if no contact closes before (s); infinite if it does not.
     pub(super) turns_at_s: f64,
+    /// Estimated time from there to the next touch (s).
+    pub(super) until_touch_s: f64,
     /// Memory for the enclosures, and for Newton's method.
     pub(super) contact_forces: Vec<ContactForce<'a>>,
     pub(super) quasi_static: QuasiStatic,
@@ -147,6 +149,7 @@ impl<'a> March<'a> {
             misses: None,
             departure: (0.0, Vec::new(), Vec::new()),
             turns_at_s: f64::INFINITY,
+            until_touch_s: f64::INFINITY,
             contact_forces: Vec::new(),
             quasi_static: QuasiStatic::default(),
             newton: Newton::default(),

@@ -136,6 +136,8 @@ pub(crate) struct Record {
     /// Its stretches. If the bodies have separated for good, the last one is endless; otherwise the last one has zero length.
     pub stretches: Vec<Stretch>,
     pub nearest_miss: Option<NearMiss>,
+    /// Estimated time from where the side has turned round with which the run ended to its next touch; otherwise infinite (s).
+    pub until_touch_s: f64,
     /// Work on the contacts (J), without what the balance adds for modes and harmonic loads that turn fast on a panel.
     pub contact_work_j: f64,
 }
@@ -176,7 +178,7 @@ pub(crate) fn follow(
         counts: march.counts,
     };
     let nearest_miss = march.misses.and_then(|misses| misses.nearest);
-    (run, Record { stretches, nearest_miss, contact_work_j })
+    (run, Record { stretches, nearest_miss, until_touch_s: march.until_touch_s, contact_work_j })
 }
 
 fn contact_end(march: &March, c: usize) -> ContactEnd {

@@ -58,6 +58,9 @@ pub struct Solution {
     pub striker_displacement_m: f64,
     /// Its velocity then (m/s).
     pub striker_velocity_m_s: f64,
+    /// Under gravity: estimated time from the highest point of the rebound to the next touch, as the gap closes there (s). If it is short, a
+    /// small change brings the touch before that point, and the rebound is another. Infinite if the gap opens there, and otherwise.
+    pub until_touch_s: f64,
     /// Modal amplitudes at `end_s` (m kg^1/2).
     pub amplitude: Vec<f64>,
     /// Their rates at `end_s` (m kg^1/2 / s).

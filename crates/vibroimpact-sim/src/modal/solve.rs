@@ -341,6 +341,7 @@ impl Solver {
             end_s: run.end_s,
             striker_displacement_m: run.striker_displacement_m,
             striker_velocity_m_s: run.striker_velocity_m_s,
+            until_touch_s: run.record.until_touch_s,
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };

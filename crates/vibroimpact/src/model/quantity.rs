@@ -1,11 +1,15 @@
 //! The quantities of an impact whose uncertainty is estimated from other impacts, and their changes.
 
-use vibroimpact_sim::modal::{Solution, SubImpact};
+use vibroimpact_sim::modal::{Outcome, Solution, SubImpact};
 
 use crate::impact::Impact;
 
 /// Weight of a change of the motion behind a quantity.
 const MOTION: f64 = 0.5;
+/// A falling striker nearly turns round in contact, or nearly in flight, if the next touch is closer to that time than this share of
+/// the flight until then, and another solution changes this by more than the second share of it.
+const NEARLY: f64 = 0.1;
+const CHANGED: f64 = 0.1;
 
 /// A quantity of an impact.
 pub(super) enum Quantity<'a> {
@@ -14,6 +18,10 @@ pub(super) enum Quantity<'a> {
         /// `(1/m + sum phi^2)/v`, with the rigid-body motions `phi` of the structure and the speed of approach `v`: its change per
         /// impulse (1/(N s)).
         per_impulse: f64,
+        /// The speed at the start as a share of `v`.
+        from: f64,
+        /// `g/v`: its change per time in a fall (1/s); otherwise 0.
+        per_time: f64,
     },
     /// The largest force of number `i` of these intervals of contact (N).
     PeakForce { of: &'a [SubImpact], i: usize },
@@ -41,8 +49,10 @@ impl Change {
 impl Quantity<'_> {
     /// The restitution of an impact.
     pub fn restitution(impact: &Impact) -> Quantity<'static> {
-        let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / impact.approach_m_s();
-        Quantity::Restitution { per_impulse }
+        let speed = impact.approach_m_s();
+        let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / speed;
+        let from = if impact.gravity_m_s2 > 0.0 { impact.striker.speed_m_s / speed } else { 1.0 };
+        Quantity::Restitution { per_impulse, from, per_time: impact.gravity_m_s2 / speed }
     }
 
     /// Its value in a solution.
@@ -72,10 +82,17 @@ impl Quantity<'_> {
             Quantity::Restitution { .. } => 1.0,
             Quantity::PeakForce { .. } => f64::INFINITY,
         };
-        let itself = self.value(a).zip(self.value(b)).map_or(unknown, |(a, b)| (a - b).abs());
+        let mut itself = self.value(a).zip(self.value(b)).map_or(unknown, |(a, b)| (a - b).abs());
         let motion = match *self {
-            Quantity::Restitution { per_impulse } if per_impulse > 0.0 && per_impulse.is_finite() => {
-                distance(&flights(a, per_impulse), &flights(b, per_impulse))
+            // a striker that falls and stays has no flight that counts
+            Quantity::Restitution { per_time, .. } if per_time > 0.0 && both(a, b, Outcome::Sustained) => 0.0,
+            Quantity::Restitution { per_impulse, from, per_time } if per_impulse > 0.0 && per_impulse.is_finite() => {
+                let of = |solution: &Solution| flights(solution, per_impulse, from, per_time);
+                let (of_a, of_b) = (of(a), of(b));
+                if per_time > 0.0 && turn_differs(&touches(a, &of_a, per_time), &touches(b, &of_b, per_time)) {
+                    itself = unknown;
+                }
+                distance(&of_a, &of_b)
             }
             Quantity::Restitution { .. } => 0.0,
             Quantity::PeakForce { of, i } => {
@@ -96,16 +113,44 @@ impl Quantity<'_> {
     }
 }
 
-/// One more than the restitution that the impact would have if it ended with each of its separations.
-fn flights(solution: &Solution, per_impulse: f64) -> Vec<f64> {
+fn both(a: &Solution, b: &Solution, outcome: Outcome) -> bool {
+    a.outcome == outcome && b.outcome == outcome
+}
+
+/// The restitution that the impact would have if it ended with each of its separations, by the velocity alone.
+fn flights(solution: &Solution, per_impulse: f64, from: f64, per_time: f64) -> Vec<f64> {
     let mut sum = 0.0;
     let separations = solution.sub_impacts.iter();
     separations
         .map(|contact| {
             sum += contact.impulse_n_s;
-            sum * per_impulse
+            sum * per_impulse - from - contact.end_s * per_time
         })
         .collect()
+}
+
+/// For each flight on which a falling striker rises, the time from where it is or would be highest to the next touch, as a share of the
+/// time until then.
+fn touches(solution: &Solution, flights: &[f64], per_time: f64) -> Vec<f64> {
+    let contacts = &solution.sub_impacts;
+    let after = |(i, restitution): (usize, &f64)| {
+        let rises_s = restitution / per_time;
+        let until_s = match contacts.get(i + 1) {
+            Some(next) => next.start_s - contacts[i].end_s - rises_s,
+            None => solution.until_touch_s,
+        };
+        (rises_s > 0.0).then(|| until_s / rises_s)
+    };
+    flights.iter().enumerate().filter_map(after).collect()
+}
+
+/// Whether a touch that is close to the highest point of a flight differs so much that it may come before or after it.
+fn turn_differs(a: &[f64], b: &[f64]) -> bool {
+    let differs = |(a, b): (&f64, &f64)| {
+        let nearest = a.abs().min(b.abs());
+        nearest < NEARLY && (a - b).abs() > CHANGED * nearest
+    };
+    a.iter().zip(b).any(differs)
 }
 
 /// Largest difference between the flights of one impact and the nearest ones of another.
@@ -126,6 +171,15 @@ mod tests {
         // a third contact that does not change the result
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
         assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_touch_counts_where_a_change_may_move_it_across_the_highest_point() {
+        assert!(!turn_differs(&[1e-3, f64::INFINITY], &[1.02e-3, f64::INFINITY]));
+        assert!(turn_differs(&[0.5, 1e-3], &[0.5, 1.2e-3]));
+        assert!(turn_differs(&[-1e-3], &[1e-3]));
+        // far from there, it may change much
+        assert!(!turn_differs(&[0.3, f64::INFINITY], &[0.8, 2.0]));
     }
 
     /// On a free beam that is much lighter than the striker, at rest and in motion.
@@ -149,9 +203,11 @@ mod tests {
             }
             let impact = crate::Scene::from_value(&scene).unwrap().impact().unwrap();
             let solution = impact.solve().unwrap();
-            let Quantity::Restitution { per_impulse } = Quantity::restitution(&impact) else { unreachable!() };
-            let last = flights(&solution, per_impulse).pop().unwrap();
-            assert!((last - 1.0 - solution.restitution.unwrap()).abs() < 1e-8, "{last}, {solution:?}");
+            let Quantity::Restitution { per_impulse, from, per_time } = Quantity::restitution(&impact) else {
+                unreachable!()
+            };
+            let last = flights(&solution, per_impulse, from, per_time).pop().unwrap();
+            assert!((last - solution.restitution.unwrap()).abs() < 1e-8, "{last}, {solution:?}");
         }
     }
 }

@@ -10,6 +10,8 @@
 //! may be such modes. And so it is where the force jumps at first touch: changes then decrease slowly, and vary by accident
 //! (`left_out.rs`).
 //!
+//! In a fall, impacts may also agree by accident that a touch comes before or after the striker turns round (`quantity.rs`).
+//!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
 //! with every further number: its errors are part of the differences, and restitutions agree when both have become small. Once it is
