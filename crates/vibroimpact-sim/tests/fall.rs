@@ -145,6 +145,16 @@ fn a_rebound_from_a_soft_support_is_awaited() {
     assert_eq!((found.outcome, found.restitution), (Outcome::Sustained, Some(0.0)));
 }
 
+/// A heavy ball on a beam that is hardly damped never leaves it again, and need not come to rest for that to be known.
+#[test]
+fn a_ball_that_swings_on_the_beam_stays() {
+    let structure = Structure { modes: vec![Mode { omega_rad_s: 570.0, damping_ratio: 0.005, shape: 1.2 }] };
+    let (heavy, spring) = (Striker { mass_kg: 300.0, speed_m_s: 0.005 }, LinearSpring::new(1e6).unwrap().into());
+    let found = falls(&structure, &heavy, &spring, None, 1e-9);
+    assert_eq!((found.outcome, found.restitution), (Outcome::Sustained, Some(0.0)), "{found:?}");
+    assert!(found.sub_impacts.len() == 1 && found.counts.contact_steps < 20_000, "{found:?}");
+}
+
 #[test]
 fn a_fall_that_is_none_is_refused() {
     let (structure, striker, law) = beam();

@@ -69,13 +69,6 @@ impl<'a> March<'a> {
         false
     }
 
-    /// Time until the only contact closes if its gap closes as fast as now; infinite if it does not (s).
-    fn time_until_touch_s(&self) -> f64 {
-        let (overlap, rate) = self.overlap_of_modes(0);
-        let gap = (self.states[0].touch_m() - overlap).max(0.0);
-        if rate > 0.0 { gap / rate } else { f64::INFINITY }
-    }
-
     /// Ends the run at the last separation.
     fn go_back_to_separation(&mut self) -> bool {
         self.look_for_misses();

@@ -48,7 +48,7 @@ impl<'a> March<'a> {
                 if !self.waits() {
                     break Outcome::End;
                 }
-                // until the contact has opened (`transition.rs`)
+                // until the contact has opened, or its first side has swung (`rise.rs`)
                 self.settings.end_s = f64::INFINITY;
             }
             if self.time_s >= self.loads.next_break_s() {
@@ -66,6 +66,7 @@ impl<'a> March<'a> {
                 break Outcome::Rest;
             } else {
                 self.contact(&mut trial);
+                self.look_at_swing();
             }
             self.stop = self.stop.or_else(|| self.limit());
         };
@@ -75,11 +76,6 @@ impl<'a> March<'a> {
             }
         }
         outcome
-    }
-
-    /// Whether the first interval of contact lasts, in a run that waits for a flight of some height.
-    fn waits(&self) -> bool {
-        self.settings.over_above_m < f64::INFINITY && self.intervals == 0 && self.states.iter().any(State::is_closed)
     }
 
     /// Passes a break of the loads.

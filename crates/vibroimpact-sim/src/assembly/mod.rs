@@ -78,6 +78,7 @@ mod record;
 mod reliability;
 pub(crate) mod responses;
 mod rest;
+mod rise;
 mod rounding;
 mod search;
 mod solution;

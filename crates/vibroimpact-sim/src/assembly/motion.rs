@@ -40,6 +40,15 @@ pub(super) struct ExpectedEvent {
     pub at_s: f64,
 }
 
+/// The motion of the first side within the first interval of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Swing {
+    Falls,
+    Rises,
+    /// It has risen and turned down again.
+    Over,
+}
+
 /// The motion during time integration. Its methods are in several files, each of which uses only those above it.
 pub(crate) struct March<'a> {
     pub(super) laws: &'a [&'a dyn ContactLaw],
@@ -71,6 +80,8 @@ pub(crate) struct March<'a> {
     pub(super) turns_at_s: f64,
     /// Estimated time from there to the next touch (s).
     pub(super) until_touch_s: f64,
+    /// In a run that waits for a flight of some height.
+    pub(super) swing: Swing,
     /// Memory for the enclosures, and for Newton's method.
     pub(super) contact_forces: Vec<ContactForce<'a>>,
     pub(super) quasi_static: QuasiStatic,
@@ -150,6 +161,7 @@ impl<'a> March<'a> {
             departure: (0.0, Vec::new(), Vec::new()),
             turns_at_s: f64::INFINITY,
             until_touch_s: f64::INFINITY,
+            swing: Swing::Falls,
             contact_forces: Vec::new(),
             quasi_static: QuasiStatic::default(),
             newton: Newton::default(),

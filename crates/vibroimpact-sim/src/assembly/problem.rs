@@ -149,7 +149,7 @@ pub struct Settings {
     /// With that, one contact, and constant loads that press its first side onto the second, as a ball is by its weight: end the run in
     /// the same way at the first separation after which this side turns round where it is displaced by more than this (m), which
     /// may be negative. A run that waits for it does not end during the first interval of contact, or before four times its duration
-    /// have passed since. Default infinity.
+    /// have passed since; if the side rises and turns down again within that interval, this counts in its place. Default infinity.
     pub over_above_m: f64,
     /// Rest is not checked before this time (s). Default 0.
     pub rest_from_s: f64,

@@ -18,8 +18,6 @@ const ALIKE: f64 = 1e-3;
 
 /// Largest number of boundaries that a contact passes as it begins.
 const MOST_PASSED: usize = 16;
-/// A run that waits for a flight of some height goes on for this many times the duration of its first interval of contact.
-const WAITED: f64 = 4.0;
 
 /// The branch on which fresh surfaces are that overlap at the start; `None` if they separate at once.
 pub(super) fn branch_at_start(law: &dyn ContactLaw, overlap: f64, rate: f64) -> Option<Branch> {
@@ -248,7 +246,7 @@ impl<'a> March<'a> {
                 self.discard_predictions();
                 self.depart();
                 self.turns_at_s = self.time_of_turning_s();
-                self.wait_after(interval_s);
+                self.wait_after_opening(interval_s);
                 self.event(c, Event::Cross(crossing.boundary));
             }
         }
@@ -260,26 +258,6 @@ impl<'a> March<'a> {
             self.departure.0 = self.time_s;
             self.departure.1.clone_from(&self.amplitude);
             self.departure.2.clone_from(&self.rate);
-        }
-    }
-
-    /// Time at which the first side of the only contact turns round, if it is displaced by enough then for the run to end (s).
-    fn time_of_turning_s(&self) -> f64 {
-        let level = self.settings.over_above_m;
-        let [link] = &self.system.links[..] else { return f64::INFINITY };
-        let Some(side) = link.sides[0].as_ref().filter(|_| level < f64::INFINITY) else { return f64::INFINITY };
-        let (shift, shift_rate) = self.loads.side(self.system, side, self.time_s);
-        let (displacement, rate) = (side.sum(&self.amplitude) + shift, side.sum(&self.rate) + shift_rate);
-        let pressed = self.loads.acceleration(0, self.time_s);
-        let turns = rate > 0.0 && pressed > 0.0 && displacement + rate * rate / (2.0 * pressed) > level;
-        if turns { self.time_s + rate / pressed } else { f64::INFINITY }
-    }
-
-    /// A run that waits for a flight of some height goes on for some time after its first interval of contact, of this duration (s).
-    fn wait_after(&mut self, interval_s: f64) {
-        if self.settings.over_above_m < f64::INFINITY && self.intervals == 1 {
-            let (end_s, after_s) = (self.settings.end_s, self.time_s + WAITED * interval_s);
-            self.settings.end_s = if end_s.is_finite() { end_s.max(after_s) } else { after_s };
         }
     }
 
