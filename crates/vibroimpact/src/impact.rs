@@ -115,6 +115,13 @@ impl Impact {
         Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
     }
 
+    /// The same impact on another structure, which is at rest.
+    pub(crate) fn on(&self, structure: Structure) -> Impact {
+        let at_rest = Start::at_rest(structure.modes.len());
+        let start = self.start.as_ref().map(|start| Start { gap_m: start.gap_m, ..at_rest });
+        Impact { structure, start, ..self.clone() }
+    }
+
     /// The modes as they are compared.
     pub(crate) fn seen(&self) -> Vec<Seen> {
         let of = |mode: &Mode| Seen { omega_rad_s: mode.omega_rad_s, shapes: vec![mode.shape] };
@@ -235,22 +242,29 @@ impl Scene {
         }
         let (structure, remainder_modes) = self.structure_from(counts, kept)?;
         let start = self.start(&structure.modes, remainder_modes)?;
-        let (striker, law) = self.striker_and_law(start.as_ref().map_or(0.0, |start| {
-            start.rate.iter().zip(&structure.modes).map(|(rate, mode)| rate * mode.shape).sum()
-        }))?;
+        let (striker, law) = self.striker_and_law(|striker| {
+            let Some(start) = &start else { return striker.speed_m_s };
+            let rates = start.rate.iter().zip(&structure.modes);
+            let surface_m_s: f64 = rates.map(|(rate, mode)| rate * mode.shape).sum();
+            let falls = self.falls();
+            surface_m_s
+                + if falls { structure.approach_m_s(striker, start, self.gravity_m_s2) } else { striker.speed_m_s }
+        })?;
         let gravity_m_s2 = self.gravity_m_s2;
         Ok(Impact { structure, remainder_modes, striker, law, start, gravity_m_s2, settings })
     }
 
-    /// The striker and the law of contact as input of the solvers. The point that is struck moves at `surface_m_s` towards the
-    /// striker at the start.
-    pub(crate) fn striker_and_law(&self, surface_m_s: f64) -> Result<(Striker, Law), InvalidInput> {
+    /// The striker and the law of contact as input of the solvers, for the speed with which it meets the surface that is struck.
+    pub(crate) fn striker_and_law(
+        &self,
+        meets_m_s: impl FnOnce(&Striker) -> f64,
+    ) -> Result<(Striker, Law), InvalidInput> {
         if !(self.gravity_m_s2 >= 0.0 && self.gravity_m_s2.is_finite()) {
             return Err(InvalidInput::new("gravity_m_s2", number(self.gravity_m_s2), NOT_NEGATIVE));
         }
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
         let striker = Striker { mass_kg, speed_m_s: self.striker.speed_m_s };
-        Ok((striker, self.law(&self.striker, striker.speed_m_s + surface_m_s, None)?))
+        Ok((striker, self.law(&self.striker, meets_m_s(&striker), None)?))
     }
 
     /// The law of contact for this striker and speed of approach; Hertz's law with these parameters where the scene says nothing of
@@ -262,6 +276,18 @@ impl Scene {
             (Contact::Hertz(stiffness), Some(hertz)) if *stiffness == HertzStiffness::default() => Ok(hertz.into()),
             (contact, _) => contact.law(striker, speed_m_s),
         }
+    }
+
+    /// The speed with which this striker meets the structure at rest: that at the start, or at the end of the fall.
+    pub(crate) fn meets_m_s(&self, striker: &Striker) -> f64 {
+        self.fall_from(0)
+            .map_or(striker.speed_m_s, |start| Structure::default().approach_m_s(striker, &start, self.gravity_m_s2))
+    }
+
+    /// The height from which the striker falls on this many modes at rest, if one is stated.
+    pub(crate) fn fall_from(&self, modes: usize) -> Option<Start> {
+        let start = self.start.as_ref().filter(|_| self.falls())?;
+        Some(Start { gap_m: start.gap_m, ..Start::at_rest(modes) })
     }
 
     /// The fall of a rod as input of the solver.

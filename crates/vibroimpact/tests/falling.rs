@@ -116,6 +116,40 @@ fn a_fall_on_a_beam_has_all_parts_of_its_uncertainty() {
     assert!(energy.residual_j.abs() < 1e-9 * energy.initial_j, "{energy:?}");
 }
 
+/// Dropped from a height, thrown down, or thrown up: what counts is the speed with which it arrives, also for a contact law that follows
+/// from a restitution. The program chooses theory and modes for each.
+#[test]
+fn a_height_of_the_fall_is_worth_its_speed() {
+    let scene = |contact: &Value, speed_m_s: f64, gap_m: f64| {
+        json!({
+            "structure": { "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
+                           "segments": [{ "length_m": 0.4, "width_m": 0.02, "thickness_m": 0.01, "material": "steel" }] },
+            "striker": { "material": "steel", "radius_m": 0.015, "speed_m_s": speed_m_s },
+            "contact": contact, "location_m": 0.31, "gravity_m_s2": GRAVITY_M_S2, "start": { "gap_m": gap_m }
+        })
+    };
+    let viscous = json!({ "law": "viscous", "material": "steel", "restitution": 0.7 });
+    for contact in [json!({ "law": "hertz", "material": "steel" }), viscous] {
+        let height_m = |speed_m_s: f64| (0.8f64.powi(2) - speed_m_s * speed_m_s) / (2.0 * GRAVITY_M_S2);
+        let known = solved(&scene(&contact, 0.8, 0.0));
+        for speed_m_s in [0.0, 0.5, -0.3] {
+            let found = solved(&scene(&contact, speed_m_s, height_m(speed_m_s)));
+            assert_eq!(found.sub_impact_count, known.sub_impact_count, "{found:?}");
+            let error = (found.restitution.unwrap() - known.restitution.unwrap()).abs();
+            let solver = found.uncertainty.solver.unwrap() + known.uncertainty.solver.unwrap();
+            assert!(error <= solver && solver < 1e-3, "{error} {found:?}");
+            let falls_s = (0.8 - speed_m_s) / GRAVITY_M_S2;
+            let begins_s = found.sub_impacts[0].start_s;
+            assert!((begins_s - falls_s).abs() < 1e-9, "{begins_s} {falls_s}");
+        }
+    }
+    // a structure that moves has the modes that are stated
+    let mut moving = scene(&json!({ "law": "hertz", "material": "steel" }), 0.5, 0.01);
+    moving["start"]["moving_modes"] = json!([{ "mode": 1, "velocity_m_s": 0.1 }]);
+    let fault = Scene::from_value(&moving).unwrap().simulate().unwrap_err();
+    assert_eq!(fault.field.to_string(), "modes", "{fault}");
+}
+
 /// A heavy ball on a soft beam is touched again two microseconds before it turns round, or after with less than six modes, and then it
 /// rises four times as high as speed. That these few modes agree says nothing.
 #[test]

@@ -101,7 +101,7 @@ impl Scene {
         left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("gravity_m_s2".into(), self.falls().then(|| number(self.gravity_m_s2)))?;
         left_out("tolerance".into(), self.tolerance.map(number))?;
-        let (striker, law) = self.striker_and_law(0.0)?;
+        let (striker, law) = self.striker_and_law(|striker| striker.speed_m_s)?;
         // of Hertz contact the stiffness is a part of the impact; otherwise it does not enter
         let stiffness_n_m1_5 = if let Law::Hertz(law) = &law { law.stiffness_n_m1_5 } else { 1.0 };
         let impact = match &self.structure {

@@ -42,7 +42,7 @@ pub(super) fn needed(
 
 /// Whether the structure moves before the impact.
 pub(super) fn moves_before(scene: &Scene) -> bool {
-    scene.start.is_some() || matches!(scene.structure, Structure::DroppedRod(_))
+    scene.starts_in_motion() || matches!(scene.structure, Structure::DroppedRod(_))
 }
 
 /// The impact with this many modes in place of `count`, and remainder modes for the others.

@@ -98,7 +98,7 @@ pub(super) enum Source<'a> {
 impl<'a> Pose<'a> {
     /// Converts a scene with a finite structure.
     pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
-        let (striker, law) = scene.striker_and_law(0.0)?;
+        let (striker, law) = scene.striker_and_law(|striker| scene.meets_m_s(striker))?;
         let chosen = chooses_modes(scene);
         let settings = Settings::default();
         let tolerance = scene.tolerance.unwrap_or(if chosen { DEFAULT_TOLERANCE } else { settings.tolerance });
@@ -140,15 +140,18 @@ impl<'a> Pose<'a> {
                 Source::Listed { modes, whole_m_n }
             }
         };
+        let striker = Striker { speed_m_s: scene.meets_m_s(&striker), ..striker };
         let wall = Wall::new(&law, &striker);
         Ok(Pose { scene, striker, law, tolerance, wall, source, kept })
     }
 
     /// The impact on these modes, of which the last are remainder modes.
     pub fn impact(&self, structure: Structure, remainder_modes: usize, settings: Settings) -> Impact {
-        let Pose { scene, striker, law, .. } = self;
-        let (striker, law, gravity_m_s2) = (*striker, *law, scene.gravity_m_s2);
-        Impact { structure, remainder_modes, striker, law, start: None, gravity_m_s2, settings }
+        let Pose { scene, law, .. } = self;
+        let (law, gravity_m_s2) = (*law, scene.gravity_m_s2);
+        let striker = Striker { speed_m_s: scene.striker.speed_m_s, ..self.striker };
+        let start = scene.fall_from(structure.modes.len());
+        Impact { structure, remainder_modes, striker, law, start, gravity_m_s2, settings }
     }
 
     /// Whether the striker moves towards the structure.

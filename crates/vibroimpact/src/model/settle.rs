@@ -25,7 +25,7 @@
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
-use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution, Structure};
+use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution};
 use vibroimpact_sim::{StopReason, both};
 
 use super::choice::Choice;
@@ -160,7 +160,6 @@ impl Rung {
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
         let mut changed = |other: Impact| Ok::<_, InvalidInput>(Some(solve(&other, pose.kept, cost)?.0));
-        let on = |structure: Structure| Impact { structure, ..self.impact.clone() };
         let mut unseen = Unseen::default();
         let Impact { structure, remainder_modes, settings, .. } = &self.impact;
         if with_solver {
@@ -169,10 +168,11 @@ impl Rung {
         }
         if listed && *remainder_modes > 1 {
             // for a list the shape of the tail is an assumption, whose effect another shape shows
-            unseen.shape = changed(on(with_one_remainder_mode(structure, *remainder_modes)))?;
+            unseen.shape = changed(self.impact.on(with_one_remainder_mode(structure, *remainder_modes)))?;
         }
         if uncertain_m_n > 0.0 {
-            unseen.compliance = changed(on(with_softer_remainder(structure, *remainder_modes, uncertain_m_n)))?;
+            unseen.compliance =
+                changed(self.impact.on(with_softer_remainder(structure, *remainder_modes, uncertain_m_n)))?;
         }
         self.unseen = Some(unseen);
         Ok(())

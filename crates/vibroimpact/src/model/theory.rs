@@ -189,7 +189,7 @@ impl Scene {
         let open = matches!(beam.theory, None | Some(BeamTheory::Auto));
         let asked = self.model == Model::Auto || self.model == Model::Modal;
         // without an approach nothing depends on the theory
-        let approaches = self.striker.speed_m_s > 0.0;
+        let approaches = self.striker.speed_m_s > 0.0 || self.fall_from(0).is_some_and(|start| start.gap_m > 0.0);
         if !(open && asked && approaches && chooses_modes(self) && !beams(self)?.is_empty()) {
             return Ok(None);
         }

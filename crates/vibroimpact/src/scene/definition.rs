@@ -126,6 +126,11 @@ impl Scene {
         self.gravity_m_s2 != 0.0
     }
 
+    /// Whether the start is more than the height from which the striker falls.
+    pub(crate) fn starts_in_motion(&self) -> bool {
+        self.start.as_ref().is_some_and(|start| !self.falls() || start.moves())
+    }
+
     /// Refuses gravity, which this does not consider.
     pub(crate) fn require_no_gravity(&self, why: &str) -> Result<(), InvalidInput> {
         InvalidInput::unless(!self.falls(), "gravity_m_s2", self.gravity_m_s2, format!("left out, because {why}"))
@@ -271,7 +276,7 @@ impl<'de> Deserialize<'de> for Scene {
 pub(crate) fn modal_only(scene: &Scene) -> Option<&'static str> {
     if matches!(scene.structure, Structure::DroppedRod(_)) {
         Some("a dropped rod is resolved in its modes")
-    } else if scene.start.is_some() {
+    } else if scene.starts_in_motion() {
         Some("the structure moves before the impact")
     } else if scene.striker.immovable {
         Some("the striker is an immovable stop")

@@ -44,6 +44,14 @@ pub struct Start {
     pub moving_modes: Vec<MovingMode>,
 }
 
+impl Start {
+    /// Whether the structure moves or is deflected; otherwise the start is a gap alone.
+    pub(crate) fn moves(&self) -> bool {
+        let Start { gap_m: _, amplitude_m_kg0_5, rate_m_kg0_5_s, moving_modes } = self;
+        !(amplitude_m_kg0_5.is_empty() && rate_m_kg0_5_s.is_empty() && moving_modes.is_empty())
+    }
+}
+
 /// The motion of one mode, given at a location where the mode moves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
