@@ -88,6 +88,8 @@ impl Course {
                 let within = (0..WITHIN).map(|i| start + (end - start) * i as f64 / WITHIN as f64);
                 times.extend(within.map(|time_s| (time_s, Some(self.stretch))));
                 times.sort_by(|a, b| a.0.total_cmp(&b.0));
+                // where two samples coincide, the one at equal distances is first, and stays
+                times.dedup_by_key(|(time_s, _)| *time_s);
             }
         }
         for (time_s, stretch) in times {
@@ -118,10 +120,11 @@ impl Course {
     }
 }
 
-/// The multiples of a step in `[start, end)`.
+/// The multiples of a step in `[start, end)`. Their rounded values are compared with the ends, so that of two adjoining panels exactly
+/// one has each multiple.
 fn multiples(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
-    let first = (start / step).ceil().max(0.0) as u64;
-    (first..).map(move |i| i as f64 * step).take_while(move |time| *time < end)
+    let before = ((start / step).floor() - 1.0).max(0.0) as u64;
+    (before..).map(move |i| i as f64 * step).skip_while(move |time| *time < start).take_while(move |time| *time < end)
 }
 
 /// Observes a run.
@@ -202,5 +205,25 @@ impl Observer for Watch<'_> {
     fn interrupts(&mut self) -> bool {
         (self.tell)(self.time_s);
         self.fault.is_some() || self.stop.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::multiples;
+
+    #[test]
+    fn every_multiple_of_the_step_is_on_exactly_one_panel() {
+        // 6 * 0.1 is more than 0.6, and 0.6000000000000001 / 0.1 is more than 6
+        for step in [0.1, 0.3, 0.7] {
+            let all: Vec<f64> = (0..100).map(|i| f64::from(i) * step).collect();
+            for nudge in [f64::next_down, |end| end, f64::next_up] {
+                let ends: Vec<f64> = all.iter().step_by(3).map(|time| nudge(*time).max(0.0)).collect();
+                let found = ends.windows(2).flat_map(|ends| multiples(ends[0], ends[1], step));
+                let first = all.iter().position(|time| *time >= ends[0]).unwrap();
+                let expected = all[first..].iter().copied().filter(|time| *time < ends[ends.len() - 1]);
+                assert_eq!(found.collect::<Vec<_>>(), expected.collect::<Vec<_>>(), "{step}");
+            }
+        }
     }
 }
