@@ -167,7 +167,7 @@ struct Outline {
     #[serde(rename = "$schema")]
     _schema: Option<String>,
     #[serde(rename = "version")]
-    _version: Option<u64>,
+    _version: Option<f64>,
     bodies: Map<String, Value>,
     contacts: Vec<Value>,
     #[serde(default)]

@@ -23,6 +23,7 @@ pub struct Rod {
     pub ends: [AxialEnd; 2],
     /// The segments; at least one.
     #[serde(deserialize_with = "objects")]
+    #[schemars(length(min = 1))]
     pub segments: Vec<AxialSegment>,
     /// Damping ratio of every mode; 0 when left out.
     #[serde(default)]

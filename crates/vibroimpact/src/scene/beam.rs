@@ -3,6 +3,7 @@
 use invalid_input::{InvalidInput, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use vibroimpact_sim::modal;
 
 use super::beam_theory::BeamTheory;
@@ -10,15 +11,18 @@ use super::fittings::{Attachment, Damping, Support};
 use super::json::{number, objects};
 use super::place::require_count;
 use super::segment::Segment;
+use super::sets::all_stated;
 
 /// A straight beam of uniform segments, from left to right.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("allOf" = theory_and_fields()))]
 pub struct Beam {
     /// How the left and the right end are held.
     pub ends: [End; 2],
     /// The segments from left to right; at least one.
     #[serde(deserialize_with = "objects")]
+    #[schemars(length(min = 1))]
     pub segments: Vec<Segment>,
     /// Theory of bending. When left out: `"auto"` where the program chooses the modes, otherwise `"euler-bernoulli"`, as
     /// in the thesis.
@@ -48,6 +52,19 @@ pub struct Beam {
     /// out.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub foundation_n_m2: f64,
+}
+
+/// Schema: what Timoshenko's theory needs of a segment, and what it does not have.
+fn theory_and_fields() -> Value {
+    let shear = [&["poissons_ratio"][..], &["material"], &["shear_rigidity_n", "rotary_inertia_kg_m"]];
+    json!([{
+        "if": { "required": ["theory"], "properties": { "theory": { "const": "timoshenko" } } },
+        "then": { "properties": {
+            "segments": { "items": { "anyOf": shear.map(all_stated) } },
+            "axial_force_n": { "const": 0 },
+            "foundation_n_m2": { "const": 0 },
+        } }
+    }])
 }
 
 fn is_zero(value: &f64) -> bool {

@@ -7,7 +7,7 @@ use contact_models::{
 use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::json::{found, number, read_beside, unknown_field};
 use super::materials::{HertzStiffness, Materials, in_contact};
@@ -52,7 +52,6 @@ pub enum Contact {
         epsilon_m: f64,
     },
     /// `"linear-spring"`: a linear spring, [`contact_models::LinearSpring`].
-    #[serde(alias = "linear")]
     LinearSpring {
         /// Stiffness (N/m).
         stiffness_n_m: f64,
@@ -69,6 +68,7 @@ pub enum Contact {
         /// Static stiffness (N/m^n).
         stiffness_n_m_n: f64,
         /// Exponent `n` of the compression, at least 2.
+        #[schemars(range(min = 2.0))]
         exponent: f64,
         /// Retardation time (s).
         retardation_time_s: f64,
@@ -118,7 +118,6 @@ pub enum Contact {
         lowest_approach_speed_m_s: Option<f64>,
     },
     /// `"elastoplastic"`: Thornton's law, [`contact_models::Thornton`].
-    #[serde(alias = "thornton")]
     Elastoplastic {
         /// What the bodies are made of.
         #[serde(flatten)]
@@ -148,21 +147,32 @@ impl Contact {
         if !law.is_some_and(Value::is_string) {
             return Err(fault("law", law));
         }
+        // a field that is null is not given
+        let given: Map<String, Value> = entries
+            .iter()
+            .filter(|(_, value)| !value.is_null())
+            .map(|(field, value)| (field.clone(), value.clone()))
+            .collect();
         // serde loses the path of a mistyped field behind a tag, but all of them are numbers
-        if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
+        if let Some((field, value)) = given.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
             return Err(fault(field, Some(value)));
         }
-        let contact: Contact = read_beside(value, beside)
+        let contact: Contact = read_beside(&Value::Object(given), beside)
             .map_err(|fault_found| if fault_found.field.is_empty() { fault("law", law) } else { fault_found })?;
         // serde cannot reject unknown fields beside flattened ones, but a field that is not written back was not read
         let written = serde_json::to_value(contact).unwrap_or_default();
-        match entries.iter().find(|(field, _)| written.get(field).is_none()) {
-            None => Ok(contact),
-            Some((field, value)) => {
-                let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
-                Err(unknown_field(field.as_str().into(), value, known.chain(beside.iter().copied())))
+        for (field, value) in entries {
+            match written.get(field) {
+                None => {
+                    let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
+                    return Err(unknown_field(field.as_str().into(), value, known.chain(beside.iter().copied())));
+                }
+                // a number with a default may be left out, but not null, as in all other objects
+                Some(used) if value.is_null() && !used.is_null() => return Err(fault(field, Some(value))),
+                Some(_) => {}
             }
         }
+        Ok(contact)
     }
 
     /// The name of the law in scene files.

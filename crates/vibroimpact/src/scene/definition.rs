@@ -72,7 +72,7 @@ struct Outline {
     #[serde(rename = "$schema")]
     _schema: Option<String>,
     #[serde(rename = "version")]
-    _version: Option<u64>,
+    _version: Option<f64>,
     #[serde(deserialize_with = "json::object")]
     striker: Striker,
     contact: Value,

@@ -78,15 +78,18 @@ fn hinted(found: SceneError, is_other: bool, format: &str, ending: &str) -> Scen
 
 /// Rejects a file in a newer format, before any unknown field is reported.
 pub(crate) fn check_version(value: &Value, newest: u64, what: &str) -> Result<(), InvalidInput> {
+    // 1.0 is a whole number too, as in the schema
+    let whole = |version: &Value| version.as_f64().filter(|number| number.fract() == 0.0);
+    let newest_number = newest as f64;
     match value.get("version") {
-        Some(version) if version.as_u64().is_some_and(|version| version > newest) => {
+        Some(version) if whole(version).is_some_and(|version| version > newest_number) => {
             let allowed = format!(
                 "at most {newest}, the newest version of the {what} format that this program understands; a newer vibroimpact, \
                  for which the file was written, can read it"
             );
             Err(InvalidInput::new("version", json::quote(version), allowed))
         }
-        Some(version) if version.as_u64() != Some(newest) => {
+        Some(version) if whole(version) != Some(newest_number) => {
             Err(InvalidInput::new("version", json::quote(version), fields::allowed("version").unwrap_or_default()))
         }
         _ => Ok(()),

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use invalid_input::{InvalidInput, Path, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use vibroimpact_sim::modal::{Mode, Solver, Structure};
 
 use super::error::require_positive;
 use super::fields;
 use super::json::{named_objects, number, read_beside};
+use super::sets::none_stated;
 use super::told::did_you_mean;
 
 /// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
@@ -32,6 +33,7 @@ use super::told::did_you_mean;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = shape_or_points()))]
 pub struct Modal {
     /// Angular frequencies (rad/s); 0 for a rigid-body mode.
     #[schemars(length(min = 1))]
@@ -53,13 +55,30 @@ pub struct Modal {
     /// listed modes vary.
     pub residual_compliance_m_n: Option<f64>,
     /// Points of the structure by their names, in place of `shape_at_location` and the compliance there.
+    #[schemars(extend("minProperties" = 1))]
     #[serde(default, deserialize_with = "named_objects", skip_serializing_if = "BTreeMap::is_empty")]
     pub points: BTreeMap<String, Point>,
 }
 
+/// Schema: either the shapes at one location with one of two compliances, or points, each of which has its own.
+fn shape_or_points() -> Value {
+    json!([
+        { "required": ["shape_at_location"], "properties": { "points": false }, "anyOf": one_compliance() },
+        { "required": ["points"], "properties": { "shape_at_location": false }, "allOf": [none_stated(&COMPLIANCES)] },
+    ])
+}
+
+/// Schema: at most one of the two compliances.
+fn one_compliance() -> Value {
+    COMPLIANCES.iter().map(|field| none_stated(&[*field])).collect()
+}
+
+const COMPLIANCES: [&str; 2] = ["static_compliance_m_n", "residual_compliance_m_n"];
+
 /// A point of a structure that is given by its modes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("anyOf" = one_compliance()))]
 pub struct Point {
     /// Shapes at the point: mass-normalised (kg^-1/2), or normalised to `modal_mass_kg`.
     pub shape: Vec<f64>,

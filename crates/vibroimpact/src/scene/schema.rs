@@ -10,13 +10,13 @@ use serde_json::{Map, Value, json};
 
 use super::material::{MATERIAL, MATERIALS, NUMBERS, names_beside};
 use super::segment::SECTIONS;
-use super::sets::schema_of_sets;
+use super::sets::{all_stated, any_stated, none_stated, schema_of_sets};
 use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
 
 /// The JSON Schema (draft 2020-12) of scene files, with `bodies` and of one impact. A file that it accepts has the right form, a
-/// location if the structure needs one, and mass, sections and loads that are each stated in one way. The schema cannot compare
-/// different fields: [`Scene::impact`] and [`AssemblyScene::pose`] check that a location lies on the beam, that lists have the same
+/// location if the structure needs one, and mass, sections, contacts and loads that are each stated in one way. The schema cannot
+/// compare different fields: [`Scene::impact`] and [`AssemblyScene::pose`] check that a location lies on the beam, that lists have the same
 /// length, and that a name is one of the points or bodies.
 ///
 /// ```
@@ -32,7 +32,9 @@ pub fn of_scenes() -> Value {
         versioned(&mut definitions[name], FORMAT_VERSION);
     }
     name_materials(&mut definitions);
+    definitions["CompleteLaw"] = json!({ "allOf": complete_law() });
     definitions["Scene"]["allOf"] = dependent_fields();
+    definitions["BodyContact"]["allOf"] = contact_of_bodies();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Scene",
@@ -97,7 +99,66 @@ fn dependent_fields() -> Value {
         ),
         of_kind(&["infinite-beam", "infinite-plate"], any(), json!({ "properties": infinite })),
         of_kind(&["dropped-rod"], any(), json!({ "properties": rod })),
-        of_kind(&struck, any(), json!({ "properties": { "striker": striker } })),
+        of_kind(&struck, any(), json!({ "properties": { "striker": striker, "contact": { "$ref": COMPLETE_LAW } } })),
+        of_kind(
+            &struck,
+            any(),
+            json!({ "if": { "required": ["contact"], "properties": { "contact": by_materials() } },
+                    "then": { "properties": { "striker": all_stated(&["radius_m"]) } } })
+        ),
+    ])
+}
+
+/// Laws that are Hertzian whatever their fields are.
+const HERTZIAN: [&str; 5] = ["hertz", "viscous", "hysteretic", "lankarani-nikravesh", "flores"];
+const STIFFNESS: &str = "stiffness_n_m1_5";
+/// Stiffness and exponent of the law `hunt-crossley` where it is not Hertzian.
+const GENERAL: [&str; 2] = ["stiffness_n_m_n", "exponent"];
+const OF_STRUCTURE: [&str; 3] = ["youngs_modulus_pa", "poissons_ratio", MATERIAL];
+const OF_STRIKER: [&str; 3] = ["striker_youngs_modulus_pa", "striker_poissons_ratio", "striker_material"];
+
+/// The stiffness of a contact follows from materials.
+fn by_materials() -> Value {
+    any_stated(&[OF_STRUCTURE, OF_STRIKER].concat())
+}
+
+/// A condition on the contacts of some laws. (Fields in a condition that holds count as known, so that each law has its own.)
+fn of_law(laws: &[&str], then: Value) -> Value {
+    json!({ "if": { "required": ["law"], "properties": { "law": { "enum": laws } } }, "then": then })
+}
+
+const COMPLETE_LAW: &str = "#/$defs/CompleteLaw";
+
+/// The stiffness of a contact is stated in one way, and its damping in one way.
+fn complete_law() -> Value {
+    // modulus and ratio, each by its number or by the name of the material
+    let complete = |[modulus, ratio, name]: [&str; 3]| json!({ "allOf": [any_stated(&[modulus, name]), any_stated(&[ratio, name])] });
+    let materials =
+        json!({ "allOf": [complete(OF_STRUCTURE)], "if": any_stated(&OF_STRIKER), "then": complete(OF_STRIKER) });
+    let all_materials = [OF_STRUCTURE, OF_STRIKER].concat();
+    let alone = |given: Value, others: &[&str]| json!({ "allOf": [given, none_stated(others)] });
+    let hertzian = [alone(all_stated(&[STIFFNESS]), &all_materials), alone(materials.clone(), &[STIFFNESS])];
+    let mut ways = hertzian.clone().map(|way| alone(way, &GENERAL)).to_vec();
+    ways.push(alone(all_stated(&GENERAL), &[&all_materials[..], &[STIFFNESS]].concat()));
+    let damping = |field: &str| json!({ "oneOf": [all_stated(&[field]), all_stated(&["restitution"])] });
+    json!([
+        of_law(&HERTZIAN, json!({ "oneOf": hertzian })),
+        of_law(&["hunt-crossley"], json!({ "oneOf": ways })),
+        of_law(&["elastoplastic"], materials),
+        of_law(&["viscous", "hunt-crossley"], damping("damping_s_m")),
+        of_law(&["kelvin-voigt"], damping("damping_n_s_m")),
+    ])
+}
+
+/// A contact of bodies in addition has the quantities to which its materials and its restitution refer.
+fn contact_of_bodies() -> Value {
+    let needs = |given: Value, field: &str| json!({ "if": given, "then": all_stated(&[field]) });
+    let by_restitution = all_stated(&["restitution"]);
+    json!([
+        { "$ref": COMPLETE_LAW },
+        of_law(&[&HERTZIAN[..], &["hunt-crossley", "elastoplastic"]].concat(), needs(by_materials(), "radius_m")),
+        of_law(&["viscous", "hunt-crossley"], needs(by_restitution.clone(), "approach_speed_m_s")),
+        of_law(&["kelvin-voigt"], needs(by_restitution, "reduced_mass_kg")),
     ])
 }
 

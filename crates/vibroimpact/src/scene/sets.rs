@@ -43,6 +43,25 @@ pub(crate) fn schema_of_sets(sets: &[&[&str]]) -> Value {
     sets.iter().map(set).collect()
 }
 
+/// Schema: all of these fields are given.
+pub(crate) fn all_stated(fields: &[&str]) -> Value {
+    let given: Map<String, Value> =
+        fields.iter().map(|field| ((*field).to_owned(), json!({ "not": { "type": "null" } }))).collect();
+    json!({ "required": fields, "properties": given })
+}
+
+/// Schema: none of these fields is given.
+pub(crate) fn none_stated(fields: &[&str]) -> Value {
+    let absent: Map<String, Value> =
+        fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect();
+    json!({ "properties": absent })
+}
+
+/// Schema: at least one of these fields is given.
+pub(crate) fn any_stated(fields: &[&str]) -> Value {
+    json!({ "anyOf": fields.iter().map(|field| all_stated(&[*field])).collect::<Vec<_>>() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

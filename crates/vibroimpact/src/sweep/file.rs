@@ -83,7 +83,7 @@ pub(super) struct SweepFile {
     _schema: Option<String>,
     #[serde(rename = "version")]
     #[schemars(skip)]
-    _version: Option<u64>,
+    _version: Option<f64>,
     /// The scene; it may leave out the varied fields.
     #[schemars(with = "Option<Map<String, Value>>")]
     scene: Option<Value>,

@@ -16,10 +16,6 @@ pub fn schema() -> Value {
     let mut sweep = of::<SweepFile>(FORMAT_VERSION);
     let mut scene = of_scenes();
     relax(&mut scene);
-    // conditions between two fields cannot be checked if either may vary
-    if let Some(impact) = scene["$defs"]["Scene"].as_object_mut() {
-        impact.remove("allOf");
-    }
     let Some(scene) = scene.as_object_mut() else { return sweep };
     let definitions = scene.remove("$defs");
     for key in ["$schema", "title"] {
@@ -33,10 +29,12 @@ pub fn schema() -> Value {
     sweep
 }
 
-/// Makes every field optional. More than one form of an object may then match.
+/// Makes every field optional. More than one form of an object may then match, and conditions between fields, which are in `allOf`,
+/// cannot be checked, because any of them may vary.
 fn relax(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
+            map.remove("allOf");
             if map.get("required").is_some_and(Value::is_array) {
                 map.remove("required");
             }
