@@ -172,6 +172,7 @@ fn tables_are_read_from_the_folder_of_the_scene() {
 
 #[test]
 fn every_field_that_cannot_be_used_is_named_by_its_path() {
+    let round = |modulus: f64, density: f64| json!({ "length_m": 0.25, "youngs_modulus_pa": modulus, "density_kg_m3": density, "diameter_m": 0.01 });
     // For each pointer and value, the path that is rejected.
     let cases = [
         ("/bodies", json!({}), "bodies"),
@@ -223,6 +224,14 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
         ("/bodies/rod/damping_ratio", json!(-1), "bodies.rod.damping_ratio"),
         ("/bodies/rod/segments/0/area_m2", json!(1), "bodies.rod.segments[0].area_m2"),
         ("/bodies/rod/segments/0/axial_rigidity_n", json!(0), "bodies.rod.segments[0].axial_rigidity_n"),
+        // a product that is zero or too different is reported as the field from which it follows
+        ("/bodies/rod/segments", json!([round(5e-324, 7800.0)]), "bodies.rod.segments[0].youngs_modulus_pa"),
+        ("/bodies/rod/segments", json!([round(2e11, 5e-324)]), "bodies.rod.segments[0].density_kg_m3"),
+        (
+            "/bodies/rod/segments",
+            json!([round(2e11, 7800.0), round(2e-2, 7800.0)]),
+            "bodies.rod.segments[1].youngs_modulus_pa",
+        ),
         ("/bodies/rig/omega_rad_s/1", json!(-1), "bodies.rig.omega_rad_s[1]"),
         ("/bodies/rig/points/tip/shape", json!([1]), "bodies.rig.points.tip.shape"),
         ("/bodies/rig/modes", json!(3), "bodies.rig.modes"),

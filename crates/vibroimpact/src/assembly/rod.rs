@@ -2,16 +2,16 @@
 
 use std::f64::consts::PI;
 
-use beam_modes::{RodEnd, RodSegment};
-use invalid_input::{InvalidInput, Path};
+use beam_modes::{Modes, RodEnd, RodSegment};
+use invalid_input::{InvalidInput, Path, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::scene::fields::{allowed_at, look_up, name_at};
 use crate::scene::json::{objects, read_told};
-use crate::scene::require_positive;
 use crate::scene::sets::{one_of_sets, schema_of_sets};
+use crate::scene::{follows_from, require_positive};
 
 /// A straight rod of uniform segments along `x`, whose points move along it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -104,9 +104,30 @@ impl Rod {
             }),
         })
     }
+
+    /// The first `count` modes.
+    pub(super) fn modes(&self, count: usize) -> Result<Modes, InvalidInput> {
+        self.to_rod()?.modes(count).map_err(|fault| {
+            let [Step::Field(_), Step::Index(i), Step::Field(_)] = *fault.field.steps() else { return fault };
+            let own = self.segments.get(i).and_then(|segment| segment.in_given_fields(&fault));
+            own.map_or(fault, |own| own.at(i).within("segments"))
+        })
+    }
 }
 
 impl AxialSegment {
+    /// The error of a property of the section as that of a field from which it follows; `None` if the segment gives it.
+    fn in_given_fields(&self, fault: &InvalidInput) -> Option<InvalidInput> {
+        let (quantity, material) = match fault.field.last() {
+            Some("axial_rigidity_n") => ("axial rigidity", ("youngs_modulus_pa", self.youngs_modulus_pa)),
+            Some("mass_per_length_kg_m") => ("mass per length", ("density_kg_m3", self.density_kg_m3)),
+            _ => return None,
+        };
+        let given = [material, ("area_m2", self.area_m2), ("diameter_m", self.diameter_m)];
+        let fields: Vec<(&str, f64)> = given.into_iter().filter_map(|(field, value)| Some((field, value?))).collect();
+        follows_from(quantity, fault, &fields)
+    }
+
     fn to_segment(self) -> Result<RodSegment, InvalidInput> {
         let given = [
             ("axial_rigidity_n", self.axial_rigidity_n),

@@ -196,7 +196,7 @@ fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
     let count = count.ok_or_else(|| InvalidInput::missing("modes", STATED_MODES))?;
     crate::scene::require_count(count)?;
     require_damping(rod.damping_ratio)?;
-    rod.to_rod()?.modes(count)
+    rod.modes(count)
 }
 
 /// A rigid mass within the range of the solver.

@@ -62,7 +62,7 @@ pub(super) fn of_product(quantity: &str, found: f64, fields: &[(&str, f64)], all
 }
 
 /// The error of such a quantity as that of the most extreme of the fields; `None` without a field or a number.
-pub(super) fn follows_from(quantity: &str, fault: &InvalidInput, fields: &[(&str, f64)]) -> Option<InvalidInput> {
+pub(crate) fn follows_from(quantity: &str, fault: &InvalidInput, fields: &[(&str, f64)]) -> Option<InvalidInput> {
     let Some(Value::Number(found)) = fault.value else { return None };
     (!fields.is_empty()).then(|| of_product(quantity, found, fields, &fault.allowed))
 }

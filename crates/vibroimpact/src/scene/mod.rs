@@ -84,7 +84,7 @@ pub(crate) use definition::{chooses_modes, modal_only, read_modes_into};
 pub use dropped_rod::DroppedRod;
 pub use error::SceneError;
 pub(crate) use error::{as_json, require_positive};
-pub(crate) use extreme::{most_extreme_in, of_computed_mode, such_that};
+pub(crate) use extreme::{follows_from, most_extreme_in, of_computed_mode, such_that};
 pub use files::FORMAT_VERSION;
 pub(crate) use files::{A_SCENE, check_version, plain_tree, read_tree, utf8, versioned_tree};
 pub use fittings::{Attachment, Support};
