@@ -192,6 +192,18 @@ fn the_schema_is_current_and_distinguishes_scenes_from_others() {
         ("piano-hammer", "/contact/exponent", json!(0.5)),
         ("piano-hammer", "/contact/stiffness_n_m_n", json!(0)),
         ("piano-hammer", "/contact/retardation_time_s", json!(1e-4)),
+        ("simply-supported-plate", "/structure/theory", json!("mindlin")),
+        ("simply-supported-plate", "/structure/shear_coefficient", json!(0.8)),
+        ("cantilever-plate", "/structure/theory", json!("mindlin")),
+        ("sdnl32", "/modes", json!("auto")),
+        ("sdnl32", "/model", json!("rigid")),
+        ("moving-beam", "/modes", json!("auto")),
+        ("falling-ball", "/model", json!("emoc")),
+        ("infinite-plate", "/model", json!("modal")),
+        ("infinite-beam", "/modes", json!(3)),
+        ("dropped-rod", "/model", json!("rigid")),
+        ("dropped-rod", "/modes", json!(5)),
+        ("measured-modes", "/model", json!("infinite-beam")),
         ("pinned-beam", "/structure/segments", json!([])),
         ("pinned-beam", "/structure/theory", json!("timoshenko")),
         ("timoshenko-beam", "/structure/axial_force_n", json!(1)),
@@ -230,10 +242,7 @@ fn the_schema_is_current_and_distinguishes_scenes_from_others() {
             other => panic!("{other}"),
         }
         assert!(!validator.is_valid(&spoilt), "{name}{place}");
-        let refused = Scene::from_value(&spoilt).and_then(|scene| match scene.is_infinite() {
-            true => scene.posed_on_infinite().map(drop),
-            false => scene.impact().and_then(|impact| impact.solve()).map(drop),
-        });
+        let refused = Scene::from_value(&spoilt).and_then(|scene| scene.simulate().map(drop));
         assert!(refused.is_err(), "{name}{place}");
     }
 }

@@ -3,9 +3,11 @@
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use vibroimpact_sim::modal::{Mode, Structure};
 
 use super::damping::require_damping;
+use super::sets::none_stated;
 
 /// A frequency has converged if more polynomials would change it by a smaller share than this.
 pub const CONVERGED_FREQUENCY: f64 = 1e-5;
@@ -32,6 +34,7 @@ pub const CONVERGED_FREQUENCY: f64 = 1e-5;
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("allOf" = theory_and_fields()))]
 pub struct Plate {
     /// Length, along x (m).
     pub length_m: f64,
@@ -55,6 +58,15 @@ pub struct Plate {
     /// Damping ratio of every mode; 0 when left out.
     #[serde(default)]
     pub damping_ratio: f64,
+}
+
+/// Schema: Mindlin's theory is for plates that are pinned along all edges, and the shear coefficient is its own.
+fn theory_and_fields() -> Value {
+    json!([{
+        "if": { "required": ["theory"], "properties": { "theory": { "const": "mindlin" } } },
+        "then": { "properties": { "edges": { "items": { "const": "pinned" } } } },
+        "else": none_stated(&["shear_coefficient"]),
+    }])
 }
 
 /// How an edge of a plate is held.

@@ -69,11 +69,12 @@ fn dependent_fields() -> Value {
     // a radius may be combined with a mass, for the contact
     let mut mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
     or_material(&mut mass_or_sphere);
+    let immovable = json!({ "required": ["immovable"], "properties": { "immovable": { "const": true } } });
     let mut stop = none(&["mass_kg", "density_kg_m3", "material"]);
     stop.insert("immovable".to_owned(), json!({ "const": true }));
     stop.insert("speed_m_s".to_owned(), json!({ "const": 0 }));
     let striker = json!({
-        "if": { "required": ["immovable"], "properties": { "immovable": { "const": true } } },
+        "if": immovable,
         "then": { "properties": stop },
         "else": { "oneOf": mass_or_sphere }
     });
@@ -86,6 +87,16 @@ fn dependent_fields() -> Value {
         "striker".to_owned(),
         json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m", "material"]) }),
     );
+    let modal_only = json!({ "properties": { "model": { "enum": ["auto", "modal"] } } });
+    for (without, model) in [(&mut infinite, "infinite-beam"), (&mut rod, "modal")] {
+        without.insert("model".to_owned(), json!({ "enum": ["auto", model] }));
+        without.insert("modes".to_owned(), json!({ "not": { "type": "integer" } }));
+    }
+    let modes_stated = json!({ "required": ["modes"], "properties": { "modes": { "type": "integer" } } });
+    let stops = json!({ "required": ["striker"], "properties": { "striker": immovable } });
+    let moves_or_stops = json!({ "anyOf": [all_stated(&["start"]), stops] });
+    let falls = json!({ "required": ["gravity_m_s2"], "properties": { "gravity_m_s2": { "exclusiveMinimum": 0 } } });
+    let mindlin = json!({ "required": ["theory"], "properties": { "theory": { "const": "mindlin" } } });
     let struck = ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate"];
     json!([
         of_kind(&["beam", "string"], any(), placed("location_m", "number", "location")),
@@ -106,6 +117,16 @@ fn dependent_fields() -> Value {
             json!({ "if": { "required": ["contact"], "properties": { "contact": by_materials() } },
                     "then": { "properties": { "striker": all_stated(&["radius_m"]) } } })
         ),
+        { "if": moves_or_stops, "then": modal_only },
+        { "if": falls, "then": modal_only },
+        of_kind(
+            &["string", "plate", "modal", "modes-file"],
+            any(),
+            json!({ "properties": { "model": { "not": { "const": "infinite-beam" } } } })
+        ),
+        // where the program does not choose the modes
+        of_kind(&["beam", "string", "plate"], any(), json!({ "if": moves_or_stops, "then": modes_stated })),
+        of_kind(&["plate"], mindlin, modes_stated),
     ])
 }
 
