@@ -615,7 +615,11 @@ fn bad_input_is_refused_by_name() {
             stiffness,
             "number of measured values = 1 is not allowed; it must be at least 2",
         ),
-        ("location,force_file\ntip,../force.csv\n", stiffness, "line 2, force_file = \"../force.csv\" is not allowed"),
+        (
+            "location,force_file\ntip,../force.csv\n",
+            stiffness,
+            "line 2, force_file = \"../force.csv\" is not allowed; it must be the path of a table in the folder of this one",
+        ),
         ("location,force_file\ntip,none.csv\n", stiffness, "none.csv"),
         (
             "location,force_file\ntip,bad.csv\n",

@@ -214,7 +214,11 @@ impl Columns {
             && !cells.text(place).is_empty()
         {
             let name = cells.text(place);
-            let path: PathBuf = table_path(FORCE_FILE, name).map_err(|fault| cells.fault(fault))?.to_owned();
+            let beside = |fault| {
+                let allowed = "the path of a table in the folder of this one or below, without ..".to_owned();
+                cells.fault(InvalidInput { allowed, ..fault })
+            };
+            let path: PathBuf = table_path(FORCE_FILE, name).map_err(beside)?.to_owned();
             let record = ForceRecord::parse(name, &open(&path)?)?;
             row.force = Some((record, deviation(cells, sd, FORCE)?));
         }
