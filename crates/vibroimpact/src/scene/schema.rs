@@ -83,10 +83,15 @@ fn dependent_fields() -> Value {
     for without in [&mut infinite, &mut rod] {
         without.insert("gravity_m_s2".to_owned(), json!({ "const": 0 }));
     }
-    rod.insert(
-        "striker".to_owned(),
-        json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m", "material"]) }),
-    );
+    let mut faller = none(&["mass_kg", "density_kg_m3", "radius_m", "material"]);
+    let mut finite_striker = Map::new();
+    for striker in [&mut faller, &mut finite_striker] {
+        striker.insert("immovable".to_owned(), json!({ "not": { "const": true } }));
+        striker.insert("speed_m_s".to_owned(), json!({ "exclusiveMinimum": 0 }));
+    }
+    rod.insert("striker".to_owned(), json!({ "properties": faller }));
+    infinite.insert("striker".to_owned(), json!({ "properties": finite_striker }));
+    infinite.insert("residual_compliance".to_owned(), json!({ "not": { "const": true } }));
     let modal_only = json!({ "properties": { "model": { "enum": ["auto", "modal"] } } });
     for (without, model) in [(&mut infinite, "infinite-beam"), (&mut rod, "modal")] {
         without.insert("model".to_owned(), json!({ "enum": ["auto", model] }));
