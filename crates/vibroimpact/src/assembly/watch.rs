@@ -120,8 +120,8 @@ impl Course {
     }
 }
 
-/// The multiples of a step in `[start, end)`. Their rounded values are compared with the ends, so that of two adjoining panels exactly
-/// one has each multiple.
+/// The multiples of a step in `[start, end)`. Their rounded values are compared with the ends, so that of two adjoining panels
+/// exactly one has each multiple.
 fn multiples(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
     let before = ((start / step).floor() - 1.0).max(0.0) as u64;
     (before..).map(move |i| i as f64 * step).skip_while(move |time| *time < start).take_while(move |time| *time < end)

@@ -16,8 +16,8 @@ use crate::assembly::AssemblyScene;
 
 /// The JSON Schema (draft 2020-12) of scene files, with `bodies` and of one impact. A file that it accepts has the right form, a
 /// location if the structure needs one, and mass, sections, contacts and loads that are each stated in one way. The schema cannot
-/// compare different fields: [`Scene::impact`] and [`AssemblyScene::pose`] check that a location lies on the beam, that lists have the same
-/// length, and that a name is one of the points or bodies.
+/// compare different fields: [`Scene::impact`] and [`AssemblyScene::pose`] check that a location lies on the beam, that lists
+/// have the same length, and that a name is one of the points or bodies.
 ///
 /// ```
 /// let schema = vibroimpact::scene::schema::of_scenes();
