@@ -99,8 +99,13 @@ fn dependent_fields() -> Value {
     }
     let modes_stated = json!({ "required": ["modes"], "properties": { "modes": { "type": "integer" } } });
     let stops = json!({ "required": ["striker"], "properties": { "striker": immovable } });
-    let moves_or_stops = json!({ "anyOf": [all_stated(&["start"]), stops] });
     let falls = json!({ "required": ["gravity_m_s2"], "properties": { "gravity_m_s2": { "exclusiveMinimum": 0 } } });
+    // in a fall a start may be the height alone
+    let listed = ["amplitude_m_kg0_5", "rate_m_kg0_5_s", "moving_modes"]
+        .map(|list| json!({ "required": [list], "properties": { list: { "minItems": 1 } } }));
+    let moves = json!({ "properties": { "start": { "anyOf": listed } } });
+    let in_motion = json!({ "allOf": [all_stated(&["start"]), { "anyOf": [{ "not": falls }, moves] }] });
+    let moves_or_stops = json!({ "anyOf": [in_motion, stops] });
     let mindlin = json!({ "required": ["theory"], "properties": { "theory": { "const": "mindlin" } } });
     let struck = ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate"];
     json!([
