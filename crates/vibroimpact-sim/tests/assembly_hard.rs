@@ -467,3 +467,28 @@ fn a_contact_that_only_touches_may_be_listed_before_one_that_presses() {
     assert_eq!(by_order[0], by_order[1]);
     assert!(by_order[0][1][0] > 0.0);
 }
+
+/// A ball in Hertz contact leaves the ground, and another one meets it shortly before or after: at the time at which a ball arrives that
+/// flies freely, however little earlier that is.
+#[test]
+fn a_contact_closes_on_time_while_another_opens() {
+    let alone = |law: Law, gap_m: f64, body: usize| Contact { sides: [on(body, &[1.0]), Point::Ground], gap_m, law };
+    let both = |arrives_s: f64| Assembly {
+        bodies: vec![Body::mass(1.0, 0.0, -1.0), Body::mass(1.0, 0.0, -1.0)],
+        contacts: vec![alone(Hertz::new(1e8).unwrap().into(), 0.0, 0), alone(spring(1e6), arrives_s, 1)],
+        loads: vec![],
+    };
+    let (_, of_one) = solve(&both(1.0), 0.01);
+    let leaves_s = of_one[0].1.end_s.unwrap();
+    for power in 2..30 {
+        for sign in [1.0, -1.0] {
+            let arrives_s = leaves_s * (1.0 - sign * 0.5f64.powi(power));
+            let (_, intervals) = solve(&both(arrives_s), 0.01);
+            for (contact, interval) in intervals {
+                let error =
+                    if contact == 0 { interval.end_s.unwrap() - leaves_s } else { interval.start_s - arrives_s };
+                assert!(error.abs() < 1e-12 * leaves_s, "contact {contact}, {power}, {sign}: {error:e}");
+            }
+        }
+    }
+}

@@ -19,6 +19,9 @@ const TAIL: f64 = 10.0;
 /// most the eighth degree.
 const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 
+/// Beyond this part of a terminal panel a zero of the event function that it ends at is the end itself.
+const OWN_END: f64 = 0.99;
+
 /// Result of testing the event functions of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Judgement {
@@ -62,15 +65,15 @@ impl Uncertainty {
 
 impl<'a> March<'a> {
     /// Tests all event functions of the contacts on a panel of `h` and finds the first that falls to zero. The series of a terminal panel
-    /// need no enclosure.
+    /// need no enclosure; the function that is zero at its end by construction is tested up to [`OWN_END`].
     pub(super) fn judge(
         &mut self,
         h: f64,
-        contacts: &[usize],
-        closed: usize,
+        (contacts, closed): (&[usize], usize),
         force: &[Legendre],
         moved: &[Nodal],
         enclosed: bool,
+        ends_at: Option<Crossing>,
     ) -> Judgement {
         let (mut first, mut doubtful): (Option<(Crossing, f64)>, bool) = (None, false);
         let mut forces = std::mem::take(&mut self.contact_forces);
@@ -100,8 +103,12 @@ impl<'a> March<'a> {
                     Verdict::Clear => {}
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {
+                        let crossing = Crossing { contact: c, boundary };
+                        if ends_at == Some(crossing) && place >= OWN_END {
+                            return;
+                        }
                         if first.is_none_or(|(_, earlier)| place < earlier) {
-                            first = Some((Crossing { contact: c, boundary }, place));
+                            first = Some((crossing, place));
                         }
                     }
                 }

@@ -16,6 +16,8 @@ const ORDER: f64 = 2.5;
 const ORDER_WEIGHTED: f64 = 5.0;
 /// An event function has fallen to zero where it is smaller than this part of its largest value.
 const MET: f64 = 1e-3;
+/// An event beyond this part of a terminal panel is located on the same panel.
+const LATE: f64 = 0.99;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
 const EXTRAPOLATED: f64 = 0.05;
 
@@ -70,7 +72,7 @@ impl<'a> March<'a> {
             return self.refine_within(length);
         };
         self.watch_panel(&mut panel, &mut solved);
-        match self.judge_solved(&panel, &solved) {
+        match self.judge_solved(&panel, &solved, None) {
             Judgement::Meets(crossing, place) => self.expect(crossing, place, length),
             _ if self.excess(&panel, &solved) > 1.0 => self.refine_within(length),
             _ => self.commit_solved(&panel, &solved),
@@ -132,7 +134,7 @@ impl<'a> March<'a> {
     }
 
     /// Advances to the event, which is expected after `expected` seconds and at most `longest` away.
-    pub(super) fn advance_to_event(&mut self, crossing: Crossing, expected: f64, longest: f64) {
+    pub(super) fn advance_to_event(&mut self, mut crossing: Crossing, expected: f64, longest: f64) {
         let mut panel = self.terminal_panel(Some(crossing.contact), (1.0 + EXTRAPOLATED) * longest);
         let Some(at) = panel.contacts.iter().position(|c| *c == crossing.contact) else {
             return self.refine(self.level + 1);
@@ -142,17 +144,26 @@ impl<'a> March<'a> {
             return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
         self.watch_panel(&mut panel, &mut solved);
-        let length = solved.length;
         // this panel may have passed over an earlier zero of the same event function, or over another event
-        match self.judge_solved(&panel, &solved) {
-            Judgement::Meets(other, place) if place < 0.99 && (other != crossing || place > 0.0) => {
-                self.expect(other, place, length);
+        while let Judgement::Meets(other, place) = self.judge_solved(&panel, &solved, Some(crossing)) {
+            if other == crossing && place == 0.0 {
+                break;
+            }
+            if place < LATE {
+                self.expect(other, place, solved.length);
                 // a closer guess avoids finding the same end again
                 self.level += 1;
                 return;
             }
-            _ => {}
+            // the places of both events are not known well enough to tell which is the first, but their times are
+            let Some(at) = panel.contacts.iter().position(|c| *c == other.contact) else { break };
+            let (expected, longest) = (place * solved.length, solved.length);
+            let found = self.panel_to_event(&panel, other, at, expected, longest);
+            let Some(mut earlier) = found.filter(|found| found.length < longest) else { break };
+            panel.look(&mut earlier);
+            (crossing, solved) = (other, earlier);
         }
+        let length = solved.length;
         let excess = self.excess(&panel, &solved);
         if excess > 1.0 {
             self.longest_terminal = shorter(length, excess, self.ends_at(crossing));
@@ -297,8 +308,8 @@ impl<'a> March<'a> {
     }
 
     /// Tests the event functions of a terminal panel, whose series need no enclosure.
-    fn judge_solved(&mut self, panel: &TerminalPanel, solved: &Solved) -> Judgement {
-        self.judge(solved.length, &panel.contacts, panel.closed, &solved.force, &solved.moved, false)
+    fn judge_solved(&mut self, panel: &TerminalPanel, solved: &Solved, ends_at: Option<Crossing>) -> Judgement {
+        self.judge(solved.length, (&panel.contacts, panel.closed), &solved.force, &solved.moved, false, ends_at)
     }
 
     /// Error of the forces of a terminal panel relative to the allowed error.

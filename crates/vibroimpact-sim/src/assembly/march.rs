@@ -157,7 +157,7 @@ impl<'a> March<'a> {
             return self.refine(level + 1);
         }
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
-        let judgement = self.judge(h, contacts, closed, &trial.force, &trial.moved, true);
+        let judgement = self.judge(h, (contacts, closed), &trial.force, &trial.moved, true, None);
         if let Judgement::Meets(crossing, place) = judgement
             && place > 0.0
         {
