@@ -72,9 +72,8 @@ impl Solver {
         // The result of the least-energy impact is always feasible.
         let reference = scaled.least_energy(&mut self.least_energy)?;
         let attained = scaled.attained(&reference);
-        match scaled.attempt(&mut self.emoc, &attained, 1.0) {
-            Ok(point) if scaled.admissible(&point) => return Ok(scaled.solution(Outcome::Solved, &point)),
-            _ => {}
+        if let Some(point) = scaled.attempt(&mut self.emoc, &attained, 1.0) {
+            return Ok(scaled.solution(Outcome::Solved, &point));
         }
         // The set of feasible shares is an interval from 0, since rows and energy are convex, and is found by bisection.
         let (mut met, mut too_much) = (0.0, 1.0);
@@ -82,8 +81,8 @@ impl Solver {
         for _ in 0..HALVINGS {
             let share = 0.5 * (met + too_much);
             match scaled.attempt(&mut self.emoc, &attained, share) {
-                Ok(point) if scaled.admissible(&point) => (met, best) = (share, point),
-                _ => too_much = share,
+                Some(point) => (met, best) = (share, point),
+                None => too_much = share,
             }
         }
         Ok(scaled.solution(Outcome::Relaxed { share: met }, &best))

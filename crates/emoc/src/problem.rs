@@ -147,6 +147,9 @@ impl Problem {
     /// Checks sizes, ranges, that `W` is symmetric and positive semidefinite, and that the velocities are in its range;
     /// otherwise an immovable body would move, with infinite energy.
     ///
+    /// Entries of `W` below 1e-10 of the largest are its rounding. A body that is 1e10 times as heavy as the lightest therefore counts as
+    /// immovable, and has to be at rest. State such a body as a part of the structure, or the impacts of the two as problems of their own.
+    ///
     /// # Errors
     /// [`InvalidInput`] names the first number, list or matrix that fails a check.
     pub fn validate(&self) -> Result<(), InvalidInput> {

@@ -2,7 +2,7 @@
 
 use crate::engine::{Engine, Failure};
 use crate::program::Program;
-use crate::{Friction, Mode, Outcome, Problem, Solution};
+use crate::{Coefficients, Contact, Friction, Mode, Outcome, Problem, Solution};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -12,8 +12,13 @@ use invalid_input::InvalidInput;
 const ENERGY_ROUNDING: f64 = 1e-10;
 /// Speed, relative to the fastest one, at which a contact may close numerically.
 const CLOSING_ROUNDING: f64 = 1e-9;
-/// Impulse, relative to the one that stops the fastest contact by itself, above which bodies count as wedged.
+/// Speed, relative to the fastest one, by which a demand may be missed numerically.
+const DEMAND_ROUNDING: f64 = 1e-8;
+/// Impulse, relative to the one that stops the striker of its contact by itself, above which bodies count as wedged.
 const WEDGED: f64 = 1e6;
+/// A striker of which the impulse that stops it by itself is this many times the one that stops the contact with the greatest mobility. The
+/// least energy then depends on differences of energies that are too far apart for an iteration without proof.
+const HEAVY: f64 = 3e5;
 /// Share of the impulses between wedged bodies, which cancel, that may be missing at a contact.
 const WEDGED_ROUNDING: f64 = 1e-11;
 
@@ -23,10 +28,11 @@ pub(crate) struct Point {
     rate_changes: Vec<f64>,
 }
 
-/// The left-hand sides of the demands at some point, one number per contact.
-pub(crate) struct Attained {
-    opening: Vec<f64>,
-    outward: Vec<f64>,
+/// What the two rows of a contact, Eqs. 6.9 and 6.10, demand, or their left-hand sides at some point.
+#[derive(Clone, Copy)]
+pub(crate) struct Demand {
+    opening: f64,
+    outward: f64,
 }
 
 /// The problem with velocities relative to the fastest one and inverse inertias relative to the largest one. Modes that no
@@ -37,6 +43,11 @@ pub(crate) struct Scaled<'a> {
     /// Indices of the modes that are not omitted.
     kept: Vec<usize>,
     normals: Vec<usize>,
+    /// Unit of the impulse in each contact coordinate: 1, or if a striker is [`HEAVY`], the one that by itself gives the striker of the
+    /// contact the unit of velocity, or the structure if the striker is immovable. A striker that is far heavier than the structure takes
+    /// many times the impulse that stops both together.
+    impulses: Vec<f64>,
+    heavy: bool,
     /// Speed at which each contact closes before the impact, 0 if it opens.
     closing: Vec<f64>,
     /// Unit of velocity (m/s).
@@ -76,7 +87,15 @@ impl<'a> Scaled<'a> {
             modes,
         };
         let closing = normals.iter().map(|&i| (-opening[i] / speed).max(0.0)).collect();
-        Ok(Some(Scaled { stated, problem, kept, normals, closing, speed, root }))
+        let mut impulses = units_of_impulse(&problem, |i| {
+            let own = problem.inverse_inertia_per_kg[i * d + i];
+            if own > 0.0 { own } else { combined[i * d + i] / root / root }
+        });
+        let heavy = impulses.iter().any(|unit| *unit > HEAVY);
+        if !heavy {
+            impulses.fill(1.0);
+        }
+        Ok(Some(Scaled { stated, problem, kept, normals, impulses, heavy, closing, speed, root }))
     }
 
     /// Least energy over the impulses within the friction cones, with `a_k' = a_k'(0) - shape_k . P`:
@@ -87,18 +106,20 @@ impl<'a> Scaled<'a> {
         let combined = self.problem.combined_inverse_inertia();
         let rates = self.problem.modes.iter().map(|mode| mode.rate);
         let opening = self.problem.opening(&self.problem.velocity_m_s, rates);
+        let units = units_of_impulse(&self.problem, |i| combined[i * d + i]);
         for i in 0..d {
-            program.linear(i, opening[i]);
+            program.linear(i, opening[i] * units[i]);
             for j in i..d {
-                program.quadratic(i, j, combined[i * d + j]);
+                program.quadratic(i, j, combined[i * d + j] * units[i] * units[j]);
             }
         }
         self.friction_rows(&mut program);
-        let impulse = engine.minimise(&program)?.x;
+        let found = engine.minimise(&program)?.x;
+        let pressing = found.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let impulse: Vec<f64> = found.iter().zip(&units).map(|(p, unit)| p * unit).collect();
         let rate_changes = self.problem.struck_changes(&impulse);
         // Between wedged bodies the least energy may need an infinite impulse.
         let point = Point { impulse, rate_changes };
-        let pressing = point.impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
         let solution = self.state(&point);
         let closes = |&i: &usize| solution.opening_m_s[i] < -10.0 * CLOSING_ROUNDING - WEDGED_ROUNDING * pressing;
         if self.normals.iter().any(closes) {
@@ -108,12 +129,12 @@ impl<'a> Scaled<'a> {
     }
 
     /// P_1 for many contacts: least energy under the outward constraints, whose demands are lowered to `share`
-    /// of the way from `attained` to those stated.
+    /// of the way from `attained` to those stated; `None` unless the numerical solution is admissible and meets them.
     ///
-    /// Variables: impulses `P`, and in units of the largest shape of each mode, which is what an impulse of 1 changes, the change `x_k`
-    /// of its speed and the change `c_k` of its magnitude `|a_k'|`. All of them are then of the size of the impulses, also if the
-    /// structure is heavy and its modal speeds exceed their changes by many orders of magnitude.
-    pub(crate) fn attempt(&self, engine: &mut Engine, attained: &Attained, share: f64) -> Result<Point, Failure> {
+    /// Variables: impulses `P` in their units, and in units of the largest shape of each mode, which is what an impulse of 1 changes, the
+    /// change `x_k` of its speed and the change `c_k` of its magnitude `|a_k'|`. All of them are then of order one, also if the structure
+    /// is heavy and its modal speeds exceed their changes by many orders of magnitude, or if a striker is heavy.
+    pub(crate) fn attempt(&self, engine: &mut Engine, attained: &[Demand], share: f64) -> Option<Point> {
         let Problem { contacts, inverse_inertia_per_kg: w, velocity_m_s: v, modes } = &self.problem;
         let (d, n) = (v.len(), modes.len());
         let (x, c) = (d, d + n);
@@ -121,10 +142,11 @@ impl<'a> Scaled<'a> {
         let units: Vec<f64> = modes.iter().map(reach).collect();
         let mut p1 = Program::new(d + 2 * n);
         // Change of energy: P.W P/2 + v.P + sum (a + x)^2/2, half of the sum in c as in Eq. 6.8.
+        let impulses = &self.impulses;
         for i in 0..d {
-            p1.linear(i, v[i]);
+            p1.linear(i, v[i] * impulses[i]);
             for j in i..d {
-                p1.quadratic(i, j, w[i * d + j]);
+                p1.quadratic(i, j, w[i * d + j] * impulses[i] * impulses[j]);
             }
         }
         for (k, mode) in modes.iter().enumerate() {
@@ -135,46 +157,54 @@ impl<'a> Scaled<'a> {
             p1.quadratic(c + k, c + k, 0.5 * unit * unit);
         }
         self.friction_rows(&mut p1);
-        let lowered = |demand: f64, had: f64| if demand > had { had + share * (demand - had) } else { demand };
+        let demands = self.demands(attained, share);
         let before = self.problem.opening(v, modes.iter().map(|mode| mode.rate));
         for (place, (&i, contact)) in self.normals.iter().zip(contacts).enumerate() {
-            let demand = contact.coefficients.ebar * self.closing[place];
-            let after = (0..d).map(|j| (j, w[i * d + j]));
+            let Demand { opening, outward } = demands[place];
+            let after = (0..d).map(|j| (j, w[i * d + j] * impulses[j]));
             // Eq. 6.9: g_i + (W P)_i - sum shape x >= ebar u; without approach it prevents interpenetration.
             let modal = modes.iter().enumerate().map(|(k, mode)| (x + k, -mode.shape[i] * units[k]));
-            p1.at_least(after.clone().chain(modal), lowered(demand, attained.opening[place]) - before[i]);
+            p1.at_least(after.clone().chain(modal), opening - before[i]);
             // Eq. 6.10, for closing contacts only; a row of zeros keeps the pattern the same for the others.
             let acts = if self.closing[place] > 0.0 { 1.0 } else { 0.0 };
             let beta0 = contact.coefficients.beta0;
             let modal = modes.iter().enumerate();
             let modal = modal.map(|(k, mode)| (c + k, -acts * beta0 * mode.shape[i].abs() * units[k]));
-            let demand = lowered(contact.coefficients.beta1 * demand, attained.outward[place]);
             let buzz: f64 = modes.iter().map(|mode| (mode.shape[i] * mode.rate).abs()).sum();
-            let bound = if acts > 0.0 { demand - v[i] + beta0 * buzz } else { -1.0 };
+            let bound = if acts > 0.0 { outward - v[i] + beta0 * buzz } else { -1.0 };
             p1.at_least(after.map(|(j, w)| (j, acts * w)).chain(modal), bound);
         }
         for (k, mode) in modes.iter().enumerate() {
             // Beyond what admissible impulses can change a bound has no effect, but would spoil the numbers.
-            let furthest = -2.0 * WEDGED * self.reach(mode, units[k]).map(|(_, reach)| reach).sum::<f64>();
+            let reach: Vec<(usize, f64)> = self.reach(mode, units[k]).collect();
+            let furthest = -2.0 * WEDGED * reach.iter().map(|(_, reach)| reach).sum::<f64>();
             let bound = |rate: f64| ((mode.rate.abs() - rate) / units[k]).min(furthest);
             p1.at_most([(x + k, 1.0), (c + k, -1.0)], bound(mode.rate)); // 6.11
             p1.at_most([(x + k, -1.0), (c + k, -1.0)], bound(-mode.rate)); // 6.12
             // 6.13: no mode changes by more than the impulses can cause.
-            p1.at_most(self.reach(mode, units[k]).chain([(x + k, 1.0)]), 0.0);
-            p1.at_most(self.reach(mode, units[k]).chain([(x + k, -1.0)]), 0.0);
+            let largest = reach.iter().fold(1.0_f64, |m, (_, reach)| m.max(-reach));
+            let row = || reach.iter().map(|&(i, reach)| (i, reach / largest));
+            p1.at_most(row().chain([(x + k, 1.0 / largest)]), 0.0);
+            p1.at_most(row().chain([(x + k, -1.0 / largest)]), 0.0);
         }
-        let mut found = engine.minimise(&p1)?.x;
+        let minimum = engine.minimise(&p1).ok()?;
+        if self.heavy && contacts.len() > 1 && !minimum.proven {
+            return None;
+        }
+        let mut found = minimum.x;
         found.truncate(d + n);
         let rate_changes = found.split_off(d).iter().zip(&units).map(|(change, unit)| change * unit).collect();
-        Ok(Point { impulse: found, rate_changes })
+        let impulse = found.iter().zip(impulses).map(|(impulse, unit)| impulse * unit).collect();
+        let point = Point { impulse, rate_changes };
+        (self.admissible(&point) && self.meets(&point, &demands)).then_some(point)
     }
 
-    /// `-(|shape_normal| + mu |shape_tangent|)` for the normal impulse of each contact, in this unit of shapes.
+    /// `-(|shape_normal| + mu |shape_tangent|)` for the normal impulse of each contact, in its unit and this unit of shapes.
     fn reach<'b>(&'b self, mode: &'b Mode, unit: f64) -> impl Iterator<Item = (usize, f64)> + 'b {
         self.normals.iter().zip(&self.problem.contacts).map(move |(&i, contact)| {
             let tangents = &mode.shape[i + 1..i + contact.friction.coordinates()];
             let tangent = tangents.iter().map(|shape| shape * shape).sum::<f64>().sqrt();
-            (i, -(mode.shape[i].abs() + contact.friction.coefficient() * tangent) / unit)
+            (i, -(mode.shape[i].abs() + contact.friction.coefficient() * tangent) / unit * self.impulses[i])
         })
     }
 
@@ -199,22 +229,42 @@ impl<'a> Scaled<'a> {
         }
     }
 
-    /// Left-hand sides of Eqs. 6.9 and 6.10 at a point.
-    pub(crate) fn attained(&self, point: &Point) -> Attained {
+    /// Left-hand sides of Eqs. 6.9 and 6.10 at a point, for each contact.
+    pub(crate) fn attained(&self, point: &Point) -> Vec<Demand> {
         let solution = self.state(point);
-        let buzz = |i: usize| -> f64 {
+        let attained = |(&i, contact): (&usize, &Contact)| {
             let terms = self.problem.modes.iter().zip(&solution.modal_rate);
-            terms.map(|(mode, rate)| (mode.shape[i] * rate).abs()).sum()
+            let buzz: f64 = terms.map(|(mode, rate)| (mode.shape[i] * rate).abs()).sum();
+            let outward = solution.velocity_m_s[i] - contact.coefficients.beta0 * buzz;
+            Demand { opening: solution.opening_m_s[i], outward }
         };
-        let contacts = self.normals.iter().zip(&self.problem.contacts);
-        let outward =
-            contacts.map(|(&i, contact)| solution.velocity_m_s[i] - contact.coefficients.beta0 * buzz(i)).collect();
-        Attained { opening: self.normals.iter().map(|&i| solution.opening_m_s[i]).collect(), outward }
+        self.normals.iter().zip(&self.problem.contacts).map(attained).collect()
+    }
+
+    /// The demands of each contact, lowered to `share` of the way from `attained` to those stated.
+    fn demands(&self, attained: &[Demand], share: f64) -> Vec<Demand> {
+        let lowered = |demand: f64, had: f64| if demand > had { had + share * (demand - had) } else { demand };
+        let demands = |((closing, contact), had): ((&f64, &Contact), &Demand)| {
+            let Coefficients { ebar, beta1, .. } = contact.coefficients;
+            let (opening, outward) = (ebar * closing, beta1 * ebar * closing);
+            Demand { opening: lowered(opening, had.opening), outward: lowered(outward, had.outward) }
+        };
+        self.closing.iter().zip(&self.problem.contacts).zip(attained).map(demands).collect()
+    }
+
+    /// Whether a numerical solution meets the demands of the contacts that close.
+    fn meets(&self, point: &Point, demands: &[Demand]) -> bool {
+        let attained = self.attained(point);
+        let met = |((closing, had), demand): ((&f64, &Demand), &Demand)| {
+            let missed = (demand.opening - had.opening).max(demand.outward - had.outward);
+            *closing == 0.0 || missed <= DEMAND_ROUNDING
+        };
+        self.closing.iter().zip(&attained).zip(demands).all(met)
     }
 
     /// Whether a numerical solution is valid: energy does not grow and no contact closes beyond rounding, and there are no
     /// impulses that only cancel each other up to rounding, as between wedged bodies.
-    pub(crate) fn admissible(&self, point: &Point) -> bool {
+    fn admissible(&self, point: &Point) -> bool {
         let solution = self.state(point);
         let (problem, p) = (&self.problem, &point.impulse);
         let before_and_after = problem.velocity_m_s.iter().zip(&solution.velocity_m_s);
@@ -222,10 +272,14 @@ impl<'a> Scaled<'a> {
             p.iter().zip(before_and_after).map(|(p, (v, after))| p.abs() * (v.abs() + after.abs())).sum();
         let rates_and_changes = problem.modes.iter().map(|mode| mode.rate).zip(&point.rate_changes);
         let modes: f64 = rates_and_changes.map(|(rate, change)| change.abs() * (rate.abs() + change.abs())).sum();
-        let available = 1.0 + problem.modes.iter().map(|mode| mode.rate * mode.rate).sum::<f64>();
+        // a striker has at least the energy of its motion in one coordinate alone
+        let inverse = |i: usize| problem.inverse_inertia_per_kg[i * p.len() + i];
+        let alone = |(i, v): (usize, &f64)| if inverse(i) > 0.0 { v * v / inverse(i) } else { 0.0 };
+        let moving = problem.velocity_m_s.iter().enumerate().map(alone).fold(1.0, f64::max);
+        let available = moving + problem.modes.iter().map(|mode| mode.rate * mode.rate).sum::<f64>();
         solution.energy_change_j <= ENERGY_ROUNDING * (strikers + modes).min(available)
             && self.normals.iter().all(|&i| solution.opening_m_s[i] >= -CLOSING_ROUNDING)
-            && point.impulse.iter().all(|p| p.abs() <= WEDGED)
+            && point.impulse.iter().zip(&self.impulses).all(|(p, unit)| p.abs() <= WEDGED * unit)
     }
 
     /// The state at a point, in the units of the program.
@@ -242,4 +296,16 @@ impl<'a> Scaled<'a> {
         let impulse = point.impulse.iter().map(|p| p * self.speed / self.root / self.root).collect();
         self.stated.solution(outcome, impulse, &rate_changes)
     }
+}
+
+/// A unit of the impulse in each contact coordinate: the one that changes the velocity by 1 if the normal of the contact has this inverse
+/// inertia.
+fn units_of_impulse(problem: &Problem, inverse_inertia: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut units = Vec::with_capacity(problem.coordinates());
+    for (&i, contact) in problem.normals().iter().zip(&problem.contacts) {
+        let inverse = inverse_inertia(i);
+        let unit = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
+        units.extend(vec![unit; contact.friction.coordinates()]);
+    }
+    units
 }

@@ -183,6 +183,50 @@ fn twelve_decades_of_mass() {
     }
 }
 
+/// A striker that is far heavier than the structure takes up an impulse that is many times the one that stops both together. The demands
+/// are met nevertheless.
+#[test]
+fn a_striker_far_heavier_than_the_structure() {
+    let mut solver = Solver::new();
+    for power in 5..=11 {
+        let z = 10f64.powi(power);
+        let phi = [(0.36 * z).sqrt(), -(0.64 * z).sqrt()];
+        for c in [coefficients(1.0, 0.0, 0.0), coefficients(0.9, 0.3, 0.2), coefficients(1.0, 0.4, 1.0)] {
+            let solution = solver.solve(&single(1.0, &phi, c)).unwrap();
+            assert_eq!(solution.outcome, Outcome::Solved, "Z = 1e{power}, {c:?}");
+            let expected = c.rebound(z).unwrap().restitution;
+            assert!((solution.velocity_m_s[0] - expected).abs() < 1e-8, "Z = 1e{power}, {c:?}: {solution:?}");
+        }
+    }
+}
+
+/// Two strikers on structures of their own, of which one weighs many times the other: two single impacts, or demands that are lowered.
+#[test]
+fn a_light_and_a_heavy_striker() {
+    let c = coefficients(0.8, 0.3, 0.1);
+    let contact = Contact { friction: Friction::None, coefficients: c };
+    let mut solver = Solver::new();
+    for power in 0..10 {
+        let heavy_kg = 10f64.powi(power);
+        let mode = |shape: [f64; 2]| Mode { rate: 0.0, shape: shape.to_vec() };
+        let problem = Problem {
+            contacts: vec![contact; 2],
+            inverse_inertia_per_kg: vec![1.0, 0.0, 0.0, 1.0 / heavy_kg],
+            velocity_m_s: vec![-1.0, -0.5],
+            modes: vec![mode([1.3, 0.0]), mode([0.0, (0.7 / heavy_kg).sqrt()])],
+        };
+        let solution = solver.solve(&problem).unwrap();
+        if solution.outcome != Outcome::Solved {
+            assert!(power > 6, "1e{power} kg: {solution:?}");
+            continue;
+        }
+        for (i, (speed, z)) in [(1.0, 1.69), (0.5, 0.7)].into_iter().enumerate() {
+            let expected = speed * c.rebound(z).unwrap().restitution;
+            assert!((solution.velocity_m_s[i] - expected).abs() < 1e-7, "1e{power} kg: {solution:?}");
+        }
+    }
+}
+
 /// Changes that must not affect the net restitution: a mode replaced by two that share its squared shape, the signs and the
 /// order of the modes, and modes with zero shape, each for one contact and for two on one structure.
 #[test]
