@@ -20,7 +20,8 @@
 //!   not a minimum. The simplex method of Nelder and Mead, restarted until it gains nothing, continues from the best point
 //!   ([`Method::Both`], the default).
 //! - **Intervals.** `C = s^2 (J^T J)^-1`, `s^2 = S/(m - n)`, in `u`, with Student's quantile ([`Fit::intervals`], which states
-//!   the assumptions), or by resampling with a seed ([`bootstrap`]).
+//!   the assumptions), by likelihood profile, also next to the end of a range ([`profile_intervals`]), or by resampling with a seed
+//!   ([`bootstrap`]).
 //! - **Determination.** [`Information`] gives the covariance, the directions that the residuals do not determine, and the gain
 //!   from further residuals; [`profile`] follows the sum of squares if the covariance is too simple; and [`chi_square_tail`]
 //!   and [`fisher_tail`] test whether noise explains the misfit.
@@ -70,7 +71,7 @@ pub use distributions::{chi_square_tail, fisher_tail, two_sided_quantile};
 pub use error::FitError;
 pub use fit::fit;
 pub use information::{Direction, Information};
-pub use intervals::{Interval, bootstrap};
+pub use intervals::{Interval, bootstrap, profile_intervals};
 pub use invalid_input::InvalidInput;
 pub use parameter::{Parameter, Range};
 pub use problem::{Fit, Method, Outcome, Problem, ResidualsFn, Settings, Start};

@@ -67,7 +67,7 @@ impl Parameter {
             let inside = match self.range {
                 Range::Free => value.abs() <= 1e100,
                 Range::Positive => (1e-100..=1e100).contains(&value),
-                Range::Between { low, high } => value > low && value < high && self.inward(value).is_finite(),
+                Range::Between { low, high } => value > low && value < high && self.inward(value).abs() < LARGEST,
             };
             if !inside {
                 let allowed =
@@ -82,12 +82,21 @@ impl Parameter {
         Ok(())
     }
 
-    /// `u` of a parameter `p`.
+    /// `u` of a parameter `p`. At an end of the range, which a search may reach by rounding, it is the largest coordinate.
     pub fn inward(&self, p: f64) -> f64 {
         match self.range {
             Range::Free => p,
-            Range::Positive => p.ln(),
-            Range::Between { low, high } => ((p - low) / (high - p)).ln(),
+            Range::Positive => p.ln().clamp(-LARGEST, LARGEST),
+            Range::Between { low, high } => ((p - low) / (high - p)).ln().clamp(-LARGEST, LARGEST),
+        }
+    }
+
+    /// The ends of the range.
+    pub(crate) fn ends(&self) -> (f64, f64) {
+        match self.range {
+            Range::Free => (f64::NEG_INFINITY, f64::INFINITY),
+            Range::Positive => (0.0, f64::INFINITY),
+            Range::Between { low, high } => (low, high),
         }
     }
 

@@ -481,3 +481,40 @@ fn the_report_of_residuals_is_right() {
     assert!((report.rms - 3.5_f64.sqrt()).abs() < 1e-15);
     assert_eq!(Residuals::of(&[]).count, 0);
 }
+
+/// Intervals by likelihood profile contain a share next to either end of its range as often as stated, or more often.
+#[test]
+fn profile_intervals_hold_next_to_the_ends_of_a_range() {
+    let times: Vec<f64> = (0..12).map(|i| f64::from(i) / 11.0).collect();
+    let mut state = 5_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((state >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+    };
+    let mut normal = || (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
+    for truth in [0.0, 0.02, 0.5, 0.98, 1.0] {
+        let (mut held, mut lengths) = (0, 0.0);
+        for _ in 0..200 {
+            let data: Vec<f64> = times.iter().map(|t| truth * t + 1.0 + 0.1 * normal()).collect();
+            let residuals = |p: &[f64], r: &mut [f64]| {
+                r.iter_mut().zip(times.iter().zip(&data)).for_each(|(r, (t, y))| *r = p[0] * t + p[1] - y);
+            };
+            let range = Range::Between { low: 0.0, high: 1.0 };
+            let share = Parameter { name: "share".into(), start: 0.3, range, search: (0.01, 0.99) };
+            let problem = Problem {
+                parameters: vec![share, Parameter::free("level", 0.5, (-3.0, 3.0))],
+                count: 12,
+                residuals: &residuals,
+                jacobian: None,
+            };
+            let settings = Settings::default();
+            let found = fit(&problem, &settings).unwrap();
+            let interval = profile_intervals(&problem, &settings, &found, 0.9).unwrap().unwrap()[0];
+            held += u32::from(interval.low <= truth && truth <= interval.high);
+            lengths += interval.high - interval.low;
+        }
+        // three standard deviations below 90 % and above 95 %
+        assert!((168..=199).contains(&held), "{truth}: {held} of 200");
+        assert!(lengths / 200.0 < 0.4, "{truth}: mean length {}", lengths / 200.0);
+    }
+}
