@@ -8,6 +8,8 @@ use vibroimpact::assembly::AssemblyScene;
 use vibroimpact::model::Model;
 use vibroimpact::simulate::Simulation;
 use vibroimpact::summary::Summary;
+use vibroimpact::text;
+use vibroimpact_sim::modal::Striker;
 
 const GRAVITY_M_S2: f64 = 9.80665;
 
@@ -143,8 +145,14 @@ fn a_height_of_the_fall_is_worth_its_speed() {
             assert!((begins_s - falls_s).abs() < 1e-9, "{begins_s} {falls_s}");
         }
     }
+    let hertz = json!({ "law": "hertz", "material": "steel" });
+    for (speed_m_s, says) in [(0.0, "dropped from 50.00 mm on a"), (0.5, "falling at 500.0 mm/s from 50.00 mm on a")] {
+        let scene = Scene::from_value(&scene(&hertz, speed_m_s, 0.05)).unwrap();
+        let headline = text::headline(&scene, &Striker { mass_kg: 0.1, speed_m_s });
+        assert!(headline.contains(says), "{headline}");
+    }
     // a structure that moves has the modes that are stated
-    let mut moving = scene(&json!({ "law": "hertz", "material": "steel" }), 0.5, 0.01);
+    let mut moving = scene(&hertz, 0.5, 0.01);
     moving["start"]["moving_modes"] = json!([{ "mode": 1, "velocity_m_s": 0.1 }]);
     let fault = Scene::from_value(&moving).unwrap().simulate().unwrap_err();
     assert_eq!(fault.field.to_string(), "modes", "{fault}");
