@@ -119,6 +119,7 @@ fn a_striker_that_hardly_rises_stays() {
     let heavy = Striker { mass_kg: 2.0, speed_m_s: 1.0 };
     let found = falls(&soft, &heavy, &hertz(), None, 1e-9);
     assert_eq!((found.outcome, found.restitution), (Outcome::Sustained, Some(0.0)));
+    assert!(found.restitution_uncertainty.unwrap() < 1e-6 && found.highest_flight < 0.01, "{found:?}");
     // in a dashpot, at once
     let damped = KelvinVoigt::new(1e5, 1e5).unwrap().into();
     let found = falls(&Structure::default(), &heavy, &damped, None, 1e-9);

@@ -191,7 +191,7 @@ fn it_is_known_that_a_striker_stays() {
         "contact": { "law": "hertz", "material": "steel" }, "location_m": 0.4, "gravity_m_s2": 9.81
     }));
     assert_eq!((found.outcome, found.restitution), ("sustained", Some(0.0)));
-    assert!(found.restitution_uncertainty.unwrap() < 2e-3, "{found:?}");
+    assert!(found.restitution_uncertainty.unwrap() < 2e-3 && found.modes < 20, "{found:?}");
 }
 
 /// Without gravity a bar of 0.3 m across would be a rigid wall.

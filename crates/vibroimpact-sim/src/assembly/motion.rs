@@ -80,8 +80,10 @@ pub(crate) struct March<'a> {
     pub(super) turns_at_s: f64,
     /// Estimated time from there to the next touch (s).
     pub(super) until_touch_s: f64,
-    /// In a run that waits for a flight of some height.
+    /// In a run that waits for a flight of some height: the first side within the first interval of contact, and the greatest displacement
+    /// to which a flight would rise if no contact closed (m).
     pub(super) swing: Swing,
+    pub(super) highest: f64,
     /// Memory for the enclosures, and for Newton's method.
     pub(super) contact_forces: Vec<ContactForce<'a>>,
     pub(super) quasi_static: QuasiStatic,
@@ -162,6 +164,7 @@ impl<'a> March<'a> {
             turns_at_s: f64::INFINITY,
             until_touch_s: f64::INFINITY,
             swing: Swing::Falls,
+            highest: f64::NEG_INFINITY,
             contact_forces: Vec::new(),
             quasi_static: QuasiStatic::default(),
             newton: Newton::default(),

@@ -25,14 +25,18 @@ impl March<'_> {
     }
 
     /// Time at which the first side of the only contact turns round, if it is displaced by enough then for the run to end (s).
-    pub(super) fn time_of_turning_s(&self) -> f64 {
+    pub(super) fn time_of_turning_s(&mut self) -> f64 {
         let level = self.settings.over_above_m;
         let Some((displacement, rate)) = self.first_side().filter(|_| self.waits_for_flight()) else {
             return f64::INFINITY;
         };
         let pressed = self.loads.acceleration(0, self.time_s);
-        let turns = rate > 0.0 && pressed > 0.0 && displacement + rate * rate / (2.0 * pressed) > level;
-        if turns { self.time_s + rate / pressed } else { f64::INFINITY }
+        if !(rate > 0.0 && pressed > 0.0) {
+            return f64::INFINITY;
+        }
+        let highest = displacement + rate * rate / (2.0 * pressed);
+        self.highest = self.highest.max(highest);
+        if highest > level { self.time_s + rate / pressed } else { f64::INFINITY }
     }
 
     /// Time until the only contact closes if its gap closes as fast as now; infinite if it does not (s).

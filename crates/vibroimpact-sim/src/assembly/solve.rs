@@ -138,6 +138,8 @@ pub(crate) struct Record {
     pub nearest_miss: Option<NearMiss>,
     /// Estimated time from where the side has turned round with which the run ended to its next touch; otherwise infinite (s).
     pub until_touch_s: f64,
+    /// In a run that waits for a flight of some height: the greatest displacement to which a flight would rise if no contact closed (m).
+    pub highest_m: f64,
     /// Work on the contacts (J), without what the balance adds for modes and harmonic loads that turn fast on a panel.
     pub contact_work_j: f64,
 }
@@ -178,7 +180,8 @@ pub(crate) fn follow(
         counts: march.counts,
     };
     let nearest_miss = march.misses.and_then(|misses| misses.nearest);
-    (run, Record { stretches, nearest_miss, until_touch_s: march.until_touch_s, contact_work_j })
+    let (until_touch_s, highest_m) = (march.until_touch_s, march.highest);
+    (run, Record { stretches, nearest_miss, until_touch_s, highest_m, contact_work_j })
 }
 
 fn contact_end(march: &March, c: usize) -> ContactEnd {

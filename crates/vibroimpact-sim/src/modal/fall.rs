@@ -112,6 +112,11 @@ impl Fall {
         square.max(0.0).sqrt() / self.arrives_m_s()
     }
 
+    /// The height above the undeflected structure at this displacement, as a share of that of the fall.
+    pub fn share(&self, displacement_m: f64) -> f64 {
+        2.0 * self.gravity_m_s2 * (self.height_m + displacement_m) / self.arrives_m_s().powi(2)
+    }
+
     /// Potential energy of the striker with this displacement (J).
     pub fn potential_j(&self, displacement_m: f64) -> f64 {
         self.mass_kg * self.gravity_m_s2 * (self.height_m + displacement_m)

@@ -61,6 +61,9 @@ pub struct Solution {
     /// Under gravity: estimated time from the highest point of the rebound to the next touch, as the gap closes there (s). If it is short, a
     /// small change brings the touch before that point, and the rebound is another. Infinite if the gap opens there, and otherwise.
     pub until_touch_s: f64,
+    /// Under gravity: height above the undeflected structure to which the highest flight would rise if no touch ended it, as a share of
+    /// the height of the fall, and thus the square of a restitution. Negative infinity without a flight that rises, and without gravity.
+    pub highest_flight: f64,
     /// Modal amplitudes at `end_s` (m kg^1/2).
     pub amplitude: Vec<f64>,
     /// Their rates at `end_s` (m kg^1/2 / s).

@@ -122,6 +122,8 @@ pub(crate) struct Solved {
 pub(crate) struct Restitutions {
     flights: Vec<Flight>,
     last: f64,
+    /// For a striker that falls and stays: that of its highest flight.
+    would_be: Option<f64>,
 }
 
 /// The motion after a contact.
@@ -342,6 +344,7 @@ impl Solver {
             striker_displacement_m: run.striker_displacement_m,
             striker_velocity_m_s: run.striker_velocity_m_s,
             until_touch_s: run.record.until_touch_s,
+            highest_flight: impact.fall.map_or(f64::NEG_INFINITY, |fall| fall.share(run.record.highest_m)),
             amplitude: std::mem::take(&mut run.amplitude),
             rate: std::mem::take(&mut run.rate),
         };
@@ -535,7 +538,9 @@ impl Solver {
             impulse_n_s += contact.impulse_n_s;
             Flight { contact_s: [contact.start_s, contact.end_s], restitution: mobility * impulse_n_s / approach - 1.0 }
         };
-        Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last })
+        let of_stay = impact.fall.filter(|_| run.outcome == Outcome::Sustained);
+        let would_be = of_stay.map(|fall| fall.share(run.record.highest_m).max(0.0).sqrt());
+        Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last, would_be })
     }
 }
 
@@ -543,6 +548,10 @@ impl Restitutions {
     /// The largest difference from another solution of the same impact, of the last restitutions and of those in the middle of
     /// each flight. The times are compared and not the numbers of the contacts, since a graze may be missing from one of them.
     fn difference(&self, other: &Restitutions) -> f64 {
+        if let (Some(one), Some(other)) = (self.would_be, other.would_be) {
+            // no flight counts, and how high they are tells how far they are from it
+            return (one - other).abs();
+        }
         let of = |pair: &[Flight]| {
             let [from_s, to_s] = [pair[0].contact_s[1], pair[1].contact_s[0]];
             Some((pair[0].restitution - other.at(0.5 * (from_s + to_s))?).abs())

@@ -50,7 +50,7 @@
 //! which a restitution that has converged is made less certain (`settle.rs`).
 
 use contact_models::{ContactLaw, Law, Memory};
-use vibroimpact_sim::modal::{Mode, Solution, Structure};
+use vibroimpact_sim::modal::{Mode, Outcome, Solution, Structure};
 
 use crate::impact::Impact;
 use crate::scene::compliance;
@@ -132,7 +132,10 @@ pub(super) fn energy_of_remainder(impact: &Impact, after: &Solution) -> f64 {
     let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
     let energy: f64 =
         motion.map(|((mode, a), rate)| (mode.omega_rad_s * a / unit).powi(2) + (rate / unit).powi(2)).sum();
-    if energy.is_finite() { OF_ENERGY * energy * taken_by_dashpot(law) } else { 0.0 }
+    // it cannot lift a striker that stays far below the height from which its rebound would count
+    let stays = impact.gravity_m_s2 > 0.0 && after.outcome == Outcome::Sustained;
+    let lacking = if stays { (-after.highest_flight).max(1.0) } else { 1.0 };
+    if energy.is_finite() { OF_ENERGY * energy / lacking * taken_by_dashpot(law) } else { 0.0 }
 }
 
 /// The structure with a single mode in place of its remainder modes, with the same first two moments

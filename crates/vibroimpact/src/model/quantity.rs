@@ -84,8 +84,11 @@ impl Quantity<'_> {
         };
         let mut itself = self.value(a).zip(self.value(b)).map_or(unknown, |(a, b)| (a - b).abs());
         let motion = match *self {
-            // a striker that falls and stays has no flight that counts
-            Quantity::Restitution { per_time, .. } if per_time > 0.0 && both(a, b, Outcome::Sustained) => 0.0,
+            // a striker that falls and stays has no flight that counts, and how high they are tells how far they are from it
+            Quantity::Restitution { per_time, .. } if per_time > 0.0 && both(a, b, Outcome::Sustained) => {
+                let [a, b] = [a, b].map(|solution| solution.highest_flight.max(0.0).sqrt());
+                (a - b).abs()
+            }
             Quantity::Restitution { per_impulse, from, per_time } if per_impulse > 0.0 && per_impulse.is_finite() => {
                 let of = |solution: &Solution| flights(solution, per_impulse, from, per_time);
                 let (of_a, of_b) = (of(a), of(b));

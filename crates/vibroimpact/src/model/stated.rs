@@ -142,7 +142,7 @@ struct Compared {
 enum Other {
     Itself,
     /// With the possible error of its remainder modes, from their energy.
-    Solved(Solution, f64),
+    Solved(Box<Solution>, f64),
 }
 
 impl Other {
@@ -262,7 +262,7 @@ fn compare_with(
         let other = Impact { settings, ..with_modes(scene, count, modes, kept)? };
         let (solution, _) = solve(&other, kept, cost)?;
         let energy = energy_of_remainder(&other, &solution);
-        Ok((Other::Solved(solution, energy), complete(&other)))
+        Ok((Other::Solved(Box::new(solution), energy), complete(&other)))
     };
     let (richer, nothing_left) = with(more)?;
     if let Some(reason) = richer.stopped_by() {
