@@ -11,7 +11,7 @@ use super::fittings::{Attachment, Damping, Support};
 use super::json::{number, objects};
 use super::place::require_count;
 use super::segment::Segment;
-use super::sets::all_stated;
+use super::sets::{all_stated, stated_as};
 
 /// A straight beam of uniform segments, from left to right.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -58,7 +58,7 @@ pub struct Beam {
 fn theory_and_fields() -> Value {
     let shear = [&["poissons_ratio"][..], &["material"], &["shear_rigidity_n", "rotary_inertia_kg_m"]];
     json!([{
-        "if": { "required": ["theory"], "properties": { "theory": { "const": "timoshenko" } } },
+        "if": stated_as("theory", json!({ "const": "timoshenko" })),
         "then": { "properties": {
             "segments": { "items": { "anyOf": shear.map(all_stated) } },
             "axial_force_n": { "const": 0 },

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use vibroimpact_sim::modal::{Mode, Structure};
 
 use super::damping::require_damping;
-use super::sets::none_stated;
+use super::sets::{none_stated, stated_as};
 
 /// A frequency has converged if more polynomials would change it by a smaller share than this.
 pub const CONVERGED_FREQUENCY: f64 = 1e-5;
@@ -63,7 +63,7 @@ pub struct Plate {
 /// Schema: Mindlin's theory is for plates that are pinned along all edges, and the shear coefficient is its own.
 fn theory_and_fields() -> Value {
     json!([{
-        "if": { "required": ["theory"], "properties": { "theory": { "const": "mindlin" } } },
+        "if": stated_as("theory", json!({ "const": "mindlin" })),
         "then": { "properties": { "edges": { "items": { "const": "pinned" } } } },
         "else": none_stated(&["shear_coefficient"]),
     }])

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::material::{MATERIAL, MATERIALS, NUMBERS, names_beside};
 use super::segment::SECTIONS;
-use super::sets::{all_stated, any_stated, none_stated, schema_of_sets};
+use super::sets::{absent, all_stated, any_stated, none_stated, schema_of_sets, stated_as};
 use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
 
@@ -50,18 +50,15 @@ pub fn of_scenes() -> Value {
 
 /// Conditions of the kind of structure on other fields.
 fn dependent_fields() -> Value {
-    let none = |fields: &[&str]| -> Map<String, Value> {
-        fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect()
-    };
     let of_kind = |kinds: &[&str], structure: Value, then: Value| {
-        let kind = json!({ "properties": { "kind": { "enum": kinds } }, "required": ["kind"] });
-        let here = json!({ "properties": { "structure": { "allOf": [kind, structure] } }, "required": ["structure"] });
+        let kind = stated_as("kind", json!({ "enum": kinds }));
+        let here = stated_as("structure", json!({ "allOf": [kind, structure] }));
         json!({ "if": here, "then": then })
     };
     let any = || json!({});
     let with_points = || json!({ "required": ["points"] });
     let placed = |field: &str, kind: &str, other: &str| {
-        let mut properties = none(&[other]);
+        let mut properties = absent(&[other]);
         properties.insert(field.to_owned(), json!({ "type": kind }));
         json!({ "required": [field], "properties": properties })
     };
@@ -69,8 +66,8 @@ fn dependent_fields() -> Value {
     // a radius may be combined with a mass, for the contact
     let mut mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
     or_material(&mut mass_or_sphere);
-    let immovable = json!({ "required": ["immovable"], "properties": { "immovable": { "const": true } } });
-    let mut stop = none(&["mass_kg", "density_kg_m3", "material"]);
+    let immovable = stated_as("immovable", json!({ "const": true }));
+    let mut stop = absent(&["mass_kg", "density_kg_m3", "material"]);
     stop.insert("immovable".to_owned(), json!({ "const": true }));
     stop.insert("speed_m_s".to_owned(), json!({ "const": 0 }));
     let striker = json!({
@@ -78,12 +75,12 @@ fn dependent_fields() -> Value {
         "then": { "properties": stop },
         "else": { "oneOf": mass_or_sphere }
     });
-    let mut infinite = none(&["location_m", "location", "start", "tolerance"]);
-    let mut rod = none(&["location_m", "location", "start", "residual_compliance"]);
+    let mut infinite = absent(&["location_m", "location", "start", "tolerance"]);
+    let mut rod = absent(&["location_m", "location", "start", "residual_compliance"]);
     for without in [&mut infinite, &mut rod] {
         without.insert("gravity_m_s2".to_owned(), json!({ "const": 0 }));
     }
-    let mut faller = none(&["mass_kg", "density_kg_m3", "radius_m", "material"]);
+    let mut faller = absent(&["mass_kg", "density_kg_m3", "radius_m", "material"]);
     let mut finite_striker = Map::new();
     for striker in [&mut faller, &mut finite_striker] {
         striker.insert("immovable".to_owned(), json!({ "not": { "const": true } }));
@@ -97,16 +94,16 @@ fn dependent_fields() -> Value {
         without.insert("model".to_owned(), json!({ "enum": ["auto", model] }));
         without.insert("modes".to_owned(), json!({ "not": { "type": "integer" } }));
     }
-    let modes_stated = json!({ "required": ["modes"], "properties": { "modes": { "type": "integer" } } });
-    let stops = json!({ "required": ["striker"], "properties": { "striker": immovable } });
-    let falls = json!({ "required": ["gravity_m_s2"], "properties": { "gravity_m_s2": { "exclusiveMinimum": 0 } } });
+    let modes_stated = stated_as("modes", json!({ "type": "integer" }));
+    let stops = stated_as("striker", immovable);
+    let falls = stated_as("gravity_m_s2", json!({ "exclusiveMinimum": 0 }));
     // in a fall a start may be the height alone
-    let listed = ["amplitude_m_kg0_5", "rate_m_kg0_5_s", "moving_modes"]
-        .map(|list| json!({ "required": [list], "properties": { list: { "minItems": 1 } } }));
+    let listed =
+        ["amplitude_m_kg0_5", "rate_m_kg0_5_s", "moving_modes"].map(|list| stated_as(list, json!({ "minItems": 1 })));
     let moves = json!({ "properties": { "start": { "anyOf": listed } } });
     let in_motion = json!({ "allOf": [all_stated(&["start"]), { "anyOf": [{ "not": falls }, moves] }] });
     let moves_or_stops = json!({ "anyOf": [in_motion, stops] });
-    let mindlin = json!({ "required": ["theory"], "properties": { "theory": { "const": "mindlin" } } });
+    let mindlin = stated_as("theory", json!({ "const": "mindlin" }));
     let struck = ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate"];
     json!([
         of_kind(&["beam", "string"], any(), placed("location_m", "number", "location")),
@@ -116,7 +113,7 @@ fn dependent_fields() -> Value {
         of_kind(
             &["modal"],
             json!({ "not": with_points() }),
-            json!({ "properties": none(&["location_m", "location"]) })
+            json!({ "properties": absent(&["location_m", "location"]) })
         ),
         of_kind(&["infinite-beam", "infinite-plate"], any(), json!({ "properties": infinite })),
         of_kind(&["dropped-rod"], any(), json!({ "properties": rod })),
@@ -124,7 +121,7 @@ fn dependent_fields() -> Value {
         of_kind(
             &struck,
             any(),
-            json!({ "if": { "required": ["contact"], "properties": { "contact": by_materials() } },
+            json!({ "if": stated_as("contact", by_materials()),
                     "then": { "properties": { "striker": all_stated(&["radius_m"]) } } })
         ),
         { "if": moves_or_stops, "then": modal_only },
@@ -155,7 +152,7 @@ fn by_materials() -> Value {
 
 /// A condition on the contacts of some laws. (Fields in a condition that holds count as known, so that each law has its own.)
 fn of_law(laws: &[&str], then: Value) -> Value {
-    json!({ "if": { "required": ["law"], "properties": { "law": { "enum": laws } } }, "then": then })
+    json!({ "if": stated_as("law", json!({ "enum": laws })), "then": then })
 }
 
 const COMPLETE_LAW: &str = "#/$defs/CompleteLaw";
@@ -228,7 +225,7 @@ fn name_materials(schema: &mut Value) {
                     .partition(|field| NUMBERS.iter().any(|number| field == number));
                 *required = others;
                 if !numbers.is_empty() {
-                    let named = json!({ "required": [MATERIAL], "properties": { MATERIAL: { "type": "string" } } });
+                    let named = stated_as(MATERIAL, json!({ "type": "string" }));
                     map.insert("anyOf".to_owned(), json!([{ "required": numbers }, named]));
                 }
             }

@@ -52,9 +52,17 @@ pub(crate) fn all_stated(fields: &[&str]) -> Value {
 
 /// Schema: none of these fields is given.
 pub(crate) fn none_stated(fields: &[&str]) -> Value {
-    let absent: Map<String, Value> =
-        fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect();
-    json!({ "properties": absent })
+    json!({ "properties": absent(fields) })
+}
+
+/// Schema: the properties of fields that are not given.
+pub(crate) fn absent(fields: &[&str]) -> Map<String, Value> {
+    fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect()
+}
+
+/// Schema: this field is given, and its value is of this schema.
+pub(crate) fn stated_as(field: &str, value: Value) -> Value {
+    json!({ "required": [field], "properties": { field: value } })
 }
 
 /// Schema: at least one of these fields is given.
