@@ -158,8 +158,8 @@ fn a_height_of_the_fall_is_worth_its_speed() {
     assert_eq!(fault.field.to_string(), "modes", "{fault}");
 }
 
-/// A heavy ball on a soft beam is touched again two microseconds before it turns round, or after with less than six modes, and then it
-/// rises four times as high as speed. That these few modes agree says nothing.
+/// A beam touches a heavy ball again two microseconds before the ball turns round. With fewer than six modes it does so after that time,
+/// and the restitution is four times as large. That four and five modes agree then says nothing.
 #[test]
 fn a_touch_close_to_the_highest_point_is_not_left_to_chance() {
     let mut scene = json!({

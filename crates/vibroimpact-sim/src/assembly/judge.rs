@@ -19,8 +19,9 @@ const TAIL: f64 = 10.0;
 /// most the eighth degree.
 const BEYOND: [f64; ORDERS] = [1.0 / 270.0, 72.0 / 270.0, 144.0 / 270.0];
 
-/// Beyond this part of a terminal panel a zero of the event function that it ends at is the end itself.
-const OWN_END: f64 = 0.99;
+/// Beyond this part of a terminal panel a zero of the event function that it ends at is the end itself, and another event is located on
+/// the same panel.
+pub(super) const NEAR_END: f64 = 0.99;
 
 /// Result of testing the event functions of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +66,7 @@ impl Uncertainty {
 
 impl<'a> March<'a> {
     /// Tests all event functions of the contacts on a panel of `h` and finds the first that falls to zero. The series of a terminal panel
-    /// need no enclosure; the function that is zero at its end by construction is tested up to [`OWN_END`].
+    /// need no enclosure; the function that is zero at its end by construction is tested up to [`NEAR_END`].
     pub(super) fn judge(
         &mut self,
         h: f64,
@@ -104,7 +105,7 @@ impl<'a> March<'a> {
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {
                         let crossing = Crossing { contact: c, boundary };
-                        if ends_at == Some(crossing) && place >= OWN_END {
+                        if ends_at == Some(crossing) && place >= NEAR_END {
                             return;
                         }
                         if first.is_none_or(|(_, earlier)| place < earlier) {

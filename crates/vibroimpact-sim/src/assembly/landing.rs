@@ -3,7 +3,7 @@
 
 use super::collocate::{Collocated, Unknown};
 use super::first_panel::SINGULAR;
-use super::judge::Judgement;
+use super::judge::{Judgement, NEAR_END};
 use super::motion::{Crossing, ExpectedEvent, March};
 use super::terminal::{Solved, TerminalPanel};
 use super::trial::{NEWTON_SHARE, Trial};
@@ -16,8 +16,6 @@ const ORDER: f64 = 2.5;
 const ORDER_WEIGHTED: f64 = 5.0;
 /// An event function has fallen to zero where it is smaller than this part of its largest value.
 const MET: f64 = 1e-3;
-/// An event beyond this part of a terminal panel is located on the same panel.
-const LATE: f64 = 0.99;
 /// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
 const EXTRAPOLATED: f64 = 0.05;
 
@@ -149,7 +147,7 @@ impl<'a> March<'a> {
             if other == crossing && place == 0.0 {
                 break;
             }
-            if place < LATE {
+            if place < NEAR_END {
                 self.expect(other, place, solved.length);
                 // a closer guess avoids finding the same end again
                 self.level += 1;

@@ -80,9 +80,9 @@ pub(crate) struct March<'a> {
     pub(super) turns_at_s: f64,
     /// Estimated time from there to the next touch (s).
     pub(super) until_touch_s: f64,
-    /// In a run that waits for a flight of some height: the first side within the first interval of contact, and the greatest displacement
-    /// to which a flight would rise if no contact closed (m).
+    /// The motion of the first side, in a run that waits for a flight of some height.
     pub(super) swing: Swing,
+    /// In such a run, the greatest displacement to which a flight would rise if no contact closed (m).
     pub(super) highest: f64,
     /// Memory for the enclosures, and for Newton's method.
     pub(super) contact_forces: Vec<ContactForce<'a>>,

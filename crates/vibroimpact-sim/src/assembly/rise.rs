@@ -1,13 +1,13 @@
 //! Runs that end with a flight of some height of the first side of their only contact, which constant loads press onto the second:
 //! the rebound of a striker that falls.
 //!
-//! Such a run does not end before the contact had time for it. It lasts at least four times as long as the first interval of contact or,
-//! if that goes on, as the first swing within it, on which the side rises and turns down again without leaving.
+//! Such a run gives the contact time for it. After the first interval of contact it goes on for at least four times its duration. If within
+//! that interval the side rises and turns down again without leaving, the time until then counts in its place.
 
 use super::motion::{March, Swing};
 use super::state::State;
 
-/// So many times the first interval of contact, or the first swing.
+/// The run goes on for this many times the duration of the first interval of contact, or of the first swing within it.
 const WAITED: f64 = 4.0;
 
 impl March<'_> {
@@ -26,17 +26,17 @@ impl March<'_> {
 
     /// Time at which the first side of the only contact turns round, if it is displaced by enough then for the run to end (s).
     pub(super) fn time_of_turning_s(&mut self) -> f64 {
-        let level = self.settings.over_above_m;
-        let Some((displacement, rate)) = self.first_side().filter(|_| self.waits_for_flight()) else {
+        if !self.waits_for_flight() {
             return f64::INFINITY;
-        };
+        }
+        let Some((displacement, rate)) = self.first_side() else { return f64::INFINITY };
         let pressed = self.loads.acceleration(0, self.time_s);
         if !(rate > 0.0 && pressed > 0.0) {
             return f64::INFINITY;
         }
         let highest = displacement + rate * rate / (2.0 * pressed);
         self.highest = self.highest.max(highest);
-        if highest > level { self.time_s + rate / pressed } else { f64::INFINITY }
+        if highest > self.settings.over_above_m { self.time_s + rate / pressed } else { f64::INFINITY }
     }
 
     /// Time until the only contact closes if its gap closes as fast as now; infinite if it does not (s).

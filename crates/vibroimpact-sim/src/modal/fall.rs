@@ -19,8 +19,8 @@
 //! If there is no such flight for the time of four rebounds without losses, `8 v/g`, and of four vibrations of the structure with the
 //! striker, the striker stays on it: `e = 0`. The latter have at most the period `2 pi sqrt(sum 1/omega_k^2 + m sum phi_k^2/omega_k^2)`
 //! (Dunkerley 1894). A soft contact may last longer; the search does not end during the first one, or before four times
-//! its duration have passed since. A striker that rises and turns down again within it has had its chance: this time counts
-//! in place of the whole.
+//! its duration have passed since. If the striker rises and turns down again within it, the time until then counts in
+//! place of the whole.
 
 use super::posed::STRIKER;
 use super::problem::{Mode, SCALE_MIN, SPEED_MIN, Start, Striker, arrives_m_s, height_m};

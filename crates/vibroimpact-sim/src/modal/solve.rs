@@ -539,7 +539,7 @@ impl Solver {
             Flight { contact_s: [contact.start_s, contact.end_s], restitution: mobility * impulse_n_s / approach - 1.0 }
         };
         let of_stay = impact.fall.filter(|_| run.outcome == Outcome::Sustained);
-        let would_be = of_stay.map(|fall| fall.share(run.record.highest_m).max(0.0).sqrt());
+        let would_be = of_stay.map(|fall| fall.restitution(run.record.highest_m, 0.0));
         Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last, would_be })
     }
 }

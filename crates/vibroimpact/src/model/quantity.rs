@@ -6,8 +6,8 @@ use crate::impact::Impact;
 
 /// Weight of a change of the motion behind a quantity.
 const MOTION: f64 = 0.5;
-/// A falling striker nearly turns round in contact, or nearly in flight, if the next touch is closer to that time than this share of
-/// the flight until then, and another solution changes this by more than the second share of it.
+/// A touch may come before or after a falling striker turns round if the time between the two is below this share of the rise, and differs
+/// between two solutions by more than the second share of itself.
 const NEARLY: f64 = 0.1;
 const CHANGED: f64 = 0.1;
 
@@ -83,9 +83,10 @@ impl Quantity<'_> {
             Quantity::PeakForce { .. } => f64::INFINITY,
         };
         let mut itself = self.value(a).zip(self.value(b)).map_or(unknown, |(a, b)| (a - b).abs());
+        let both_stay = [a, b].iter().all(|solution| solution.outcome == Outcome::Sustained);
         let motion = match *self {
             // a striker that falls and stays has no flight that counts, and how high they are tells how far they are from it
-            Quantity::Restitution { per_time, .. } if per_time > 0.0 && both(a, b, Outcome::Sustained) => {
+            Quantity::Restitution { per_time, .. } if per_time > 0.0 && both_stay => {
                 let [a, b] = [a, b].map(|solution| solution.highest_flight.max(0.0).sqrt());
                 (a - b).abs()
             }
@@ -116,10 +117,6 @@ impl Quantity<'_> {
     }
 }
 
-fn both(a: &Solution, b: &Solution, outcome: Outcome) -> bool {
-    a.outcome == outcome && b.outcome == outcome
-}
-
 /// The restitution that the impact would have if it ended with each of its separations, by the velocity alone.
 fn flights(solution: &Solution, per_impulse: f64, from: f64, per_time: f64) -> Vec<f64> {
     let mut sum = 0.0;
@@ -132,8 +129,8 @@ fn flights(solution: &Solution, per_impulse: f64, from: f64, per_time: f64) -> V
         .collect()
 }
 
-/// For each flight on which a falling striker rises, the time from where it is or would be highest to the next touch, as a share of the
-/// time until then.
+/// For each flight on which a falling striker rises, the time from its highest point to the next touch, as a share of the duration of the
+/// rise. It is negative if the touch comes first.
 fn touches(solution: &Solution, flights: &[f64], per_time: f64) -> Vec<f64> {
     let contacts = &solution.sub_impacts;
     let after = |(i, restitution): (usize, &f64)| {

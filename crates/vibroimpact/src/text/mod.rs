@@ -66,7 +66,7 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
         return format!("immovable stop before a {structure}{place}; {} contact", scene.contact.law_name());
     }
     let (mass, speed) = (quantity(striker.mass_kg * 1e3, "g"), quantity(striker.speed_m_s, "m/s"));
-    let from_m = scene.start.as_ref().map(|start| start.gap_m).filter(|gap_m| scene.falls() && *gap_m > 0.0);
+    let from_m = scene.fall_from(0).map(|start| start.gap_m).filter(|gap_m| *gap_m > 0.0);
     let motion = match from_m {
         Some(from_m) if striker.speed_m_s == 0.0 => format!("dropped from {}", quantity(from_m, "m")),
         Some(from_m) => format!("falling at {speed} from {}", quantity(from_m, "m")),
