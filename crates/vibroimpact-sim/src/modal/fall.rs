@@ -107,9 +107,8 @@ impl Fall {
 
     /// Restitution of a rebound that begins with this displacement and velocity of the striker.
     pub fn restitution(&self, displacement_m: f64, velocity_m_s: f64) -> f64 {
-        let height_m = self.height_m + displacement_m;
-        let square = velocity_m_s.powi(2) + 2.0 * self.gravity_m_s2 * height_m;
-        square.max(0.0).sqrt() / self.arrives_m_s()
+        let square = (velocity_m_s / self.arrives_m_s()).powi(2) + self.share(displacement_m);
+        square.max(0.0).sqrt()
     }
 
     /// The height above the undeflected structure at this displacement, as a share of that of the fall.
