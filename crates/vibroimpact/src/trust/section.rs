@@ -199,4 +199,42 @@ mod tests {
         let [within, outside] = SLENDER.map(excess);
         assert!((within - 0.05).abs() < 0.01 && (outside - 0.27).abs() < 0.04, "{within} {outside}");
     }
+
+    /// The basis of the first limit with shear: Timoshenko's second spectrum compared with the second antisymmetric wave of an
+    /// elastic strip in plane stress (Rayleigh 1889, Lamb 1917), where it begins and where half waves of the first spectrum have
+    /// the limit.
+    #[test]
+    fn the_second_spectrum_is_too_fast_by_three_to_five_per_cent_up_to_the_limit_with_shear() {
+        // half the thickness, the speed of shear waves and the density are 1
+        let nu = 0.3_f64;
+        let (rigidity, mass, inertia) = (4.0 / 3.0 * (1.0 + nu), 2.0, 2.0 / 3.0);
+        let shear = 2.0 * 5.0 * (1.0 + nu) / (6.0 + 5.0 * nu);
+        let section = Section { thickness_m: 2.0, clearance_m: None, rigidity, mass, shear: Some([shear, inertia]) };
+        let cut_off = (shear / inertia).sqrt();
+        let begins = section.half_wavelength_m(cut_off) / section.thickness_m;
+        assert!((begins - 0.785).abs() < 1e-3, "{begins}");
+        let limit = section.frequency_rad_s(WITH_SHEAR[0]);
+        assert!((limit / cut_off - 1.70).abs() < 0.01, "{}", limit / cut_off);
+
+        // the other root of the equation of the half wavelength, whose sum with the first is its middle coefficient
+        let second_k2 = |omega: f64| {
+            let first_k = PI / section.half_wavelength_m(omega);
+            (inertia / rigidity + mass / shear) * omega * omega - first_k * first_k
+        };
+        let elastic = |omega: f64, k2: f64| {
+            let (p, q) = ((0.5 * omega * omega * (1.0 - nu) - k2).sqrt(), (omega * omega - k2).sqrt());
+            (q * q - k2).powi(2) * p.sin() / p * q.cos() + 4.0 * k2 * q * p.cos() * q.sin()
+        };
+        for (omega, expected) in [(cut_off, 0.0265), (limit, 0.0447)] {
+            let k2 = second_k2(omega).max(0.0);
+            let (mut low, mut high) = (0.9 * omega, omega);
+            assert!(elastic(low, k2) * elastic(high, k2) < 0.0, "{omega}");
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                *(if elastic(middle, k2) * elastic(high, k2) > 0.0 { &mut high } else { &mut low }) = middle;
+            }
+            let excess = omega / low - 1.0;
+            assert!((excess - expected).abs() < 1e-3, "{omega}: {excess}");
+        }
+    }
 }
