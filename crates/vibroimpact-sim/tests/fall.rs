@@ -2,9 +2,11 @@
 
 use crate::common::random::{Impact, config, ordinary_impact};
 use crate::common::{ball, hertz, pinned, second_method_under, settings};
-use contact_models::{KelvinVoigt, Law, LinearSpring};
+use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring};
 use proptest::prelude::*;
-use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{
+    Derivative, Mode, Outcome, Parameter, Posing, Settings, Solution, Solver, Start, Stencil, Striker, Structure,
+};
 
 const GRAVITY_M_S2: f64 = 9.81;
 /// Half of the time over which a difference of velocities is an acceleration (s).
@@ -198,4 +200,86 @@ proptest! {
             prop_assert!(found.outcome.stopped_by().is_none() || found.counts.steps() > 10_000, "{:?}", found.outcome);
         }
     }
+}
+
+/// A fall at one value of each number that defines it.
+struct Drop {
+    structure: Structure,
+    striker: Striker,
+    law: Law,
+    start: Start,
+    gravity_m_s2: f64,
+}
+
+impl Drop {
+    /// With a part of one of the numbers added to it, for a start that touches at 1 m/s or is at rest 50 mm above.
+    fn new(from_rest: bool, number: usize, part: f64) -> Drop {
+        let times = |which: usize| if which == number { 1.0 + part } else { 1.0 };
+        let mut structure = pinned(6, 0.01 * times(4), 0.3 * times(5));
+        structure.modes.iter_mut().for_each(|mode| mode.omega_rad_s *= times(3));
+        let speed_m_s = if from_rest { 0.0 } else { times(1) };
+        let gap_m = if from_rest { 0.05 * times(1) } else { 0.0 };
+        Drop {
+            striker: Striker { mass_kg: 0.263 * times(0), speed_m_s },
+            law: Hertz::new(1.8e10 * times(6)).unwrap().into(),
+            start: Start { gap_m, ..Start::at_rest(structure.modes.len()) },
+            gravity_m_s2: GRAVITY_M_S2 * times(2),
+            structure,
+        }
+    }
+
+    fn solver(&self) -> Solver {
+        Solver::new(&self.structure).unwrap().under_gravity(self.gravity_m_s2).unwrap()
+    }
+
+    fn posing(&self) -> Posing<'_> {
+        let Drop { structure, striker, law, start, gravity_m_s2 } = self;
+        Posing { structure, striker, law, start, gravity_m_s2: *gravity_m_s2 }
+    }
+}
+
+#[test]
+fn derivatives_agree_with_differences_of_falls() {
+    const NUMBERS: usize = 7;
+    let offsets = [-2e-6, -1e-6, 1e-6, 2e-6];
+    for from_rest in [false, true] {
+        let drop = Drop::new(from_rest, 0, 0.0);
+        let near: Vec<[Drop; 4]> =
+            (0..NUMBERS).map(|number| offsets.map(|part| Drop::new(from_rest, number, part))).collect();
+        let mut parameters = Vec::new();
+        for (number, near) in near.iter().enumerate() {
+            let neighbours = near.each_ref().map(Drop::posing);
+            parameters.push(Parameter { offsets, neighbours, changes_law: number == 6 });
+        }
+        let Drop { striker, law, start, .. } = &drop;
+        let found = drop.solver().differentiate(striker, law, Some(start), &settings(1e-10), &parameters).unwrap();
+        assert!(found.solution.sub_impacts.len() > 1, "{:?}", found.solution);
+        for (number, (derivatives, near)) in found.derivatives.iter().zip(&near).enumerate() {
+            let solutions = near
+                .each_ref()
+                .map(|at| at.solver().solve(&at.striker, &at.law, Some(&at.start), &settings(1e-13)).unwrap());
+            let derivatives = derivatives.as_ref().unwrap();
+            let outputs: [(Derivative, fn(&Solution) -> f64); 3] = [
+                (derivatives.restitution, |solution| solution.restitution.unwrap()),
+                (derivatives.end_s, |solution| solution.end_s),
+                (derivatives.striker_velocity_m_s, |solution| solution.striker_velocity_m_s),
+            ];
+            for (derivative, output) in outputs {
+                let slope = Stencil::new(offsets).slope(solutions.each_ref().map(output));
+                let error = (derivative.value - slope).abs();
+                assert!(error < derivative.uncertainty.unwrap() + 1e-6, "{from_rest} {number} {derivative:?} {slope}");
+                assert!(derivative.uncertainty.unwrap() < 1e-4, "{from_rest} {number} {derivative:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn derivatives_need_gravity_at_all_neighbours_or_at_none() {
+    let drop = Drop::new(false, 0, 0.0);
+    let near = [0.0, GRAVITY_M_S2, 10.0, 10.0].map(|gravity_m_s2| Posing { gravity_m_s2, ..drop.posing() });
+    let parameter = Parameter { offsets: [-2.0, -1.0, 1.0, 2.0], neighbours: near, changes_law: false };
+    let Drop { striker, law, start, .. } = &drop;
+    let fault = drop.solver().differentiate(striker, law, Some(start), &settings(1e-9), &[parameter]).unwrap_err();
+    assert_eq!(fault.field.to_string(), "parameters[0].neighbours[0].gravity_m_s2");
 }

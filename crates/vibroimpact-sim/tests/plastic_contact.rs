@@ -229,7 +229,7 @@ fn derivatives_follow_the_internal_variables() {
         let strikers = offsets.map(|by| Striker { speed_m_s: 1.0 + by, ..ball() });
         let softer = offsets.map(|by| Hardening { isotropic_n_m: law.isotropic_n_m * (1.0 + by), ..law });
         let sooner = offsets.map(|by| Hardening { yield_force_n: law.yield_force_n * (1.0 + by), ..law });
-        let of = |striker, law| Posing { structure: &structure, striker, law, start: &start };
+        let of = |striker, law| Posing { structure: &structure, striker, law, start: &start, gravity_m_s2: 0.0 };
         let at = [ball(); 4];
         let parameters = [
             Parameter { offsets, neighbours: strikers.each_ref().map(|striker| of(striker, &law)), changes_law: false },

@@ -111,8 +111,8 @@ impl Impact {
 impl Impact {
     /// The impact as a neighbour of another one; `at_rest` is used if the structure does not move.
     pub(crate) fn posing<'a>(&'a self, at_rest: &'a Start) -> Posing<'a> {
-        let Impact { structure, striker, law, start, .. } = self;
-        Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
+        let Impact { structure, striker, law, start, gravity_m_s2, .. } = self;
+        Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest), gravity_m_s2: *gravity_m_s2 }
     }
 
     /// The same impact on another structure, which is at rest.

@@ -1,9 +1,11 @@
 //! Derivatives of an impact with respect to the numbers that define it.
 
+use super::fall::{Fall, check_gravity};
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::solution::{Outcome, Solution};
 use super::solve::{ANSWER, BESIDE, Impact, Lowered, Run, SOLUTIONS, Solved, Solver};
+use crate::assembly::Assembly;
 use crate::assembly::change::Change;
 use crate::assembly::differentiate::{Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
@@ -28,6 +30,8 @@ pub struct Posing<'a> {
     pub law: &'a dyn ContactLaw,
     /// Motion of the structure at the start.
     pub start: &'a Start,
+    /// Acceleration of gravity, if the striker falls; otherwise 0 (m/s^2).
+    pub gravity_m_s2: f64,
 }
 
 impl Posing<'_> {
@@ -38,6 +42,7 @@ impl Posing<'_> {
     pub fn check(&self) -> Result<(), InvalidInput> {
         self.structure.check()?;
         self.striker.check()?;
+        check_gravity(self.gravity_m_s2)?;
         self.start.check(self.structure.modes.len())
     }
 }
@@ -48,6 +53,7 @@ impl fmt::Debug for Posing<'_> {
             .field("structure", self.structure)
             .field("striker", self.striker)
             .field("start", self.start)
+            .field("gravity_m_s2", &self.gravity_m_s2)
             .finish_non_exhaustive()
     }
 }
@@ -138,7 +144,7 @@ impl Solver {
     /// let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
     /// let balls = offsets.map(|more| Striker { mass_kg: 0.1 + more, speed_m_s: 1.0 });
     /// let neighbours =
-    ///     balls.each_ref().map(|striker| Posing { structure: &structure, striker, law: &law, start: &start });
+    ///     balls.each_ref().map(|striker| Posing { structure: &structure, striker, law: &law, start: &start, gravity_m_s2: 0.0 });
     /// let mass = Parameter { offsets, neighbours, changes_law: false };
     /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
     /// let solved = Solver::new(&structure)?.differentiate(&ball, &law, None, &Settings::default(), &[mass])?;
@@ -149,7 +155,7 @@ impl Solver {
     /// ```
     ///
     /// # Errors
-    /// As [`Solver::solve`], for neighbours with another number of modes, and under gravity.
+    /// As [`Solver::solve`], also for the neighbours, and if some of them have another number of modes or have gravity alone.
     pub fn differentiate(
         &self,
         striker: &Striker,
@@ -159,7 +165,6 @@ impl Solver {
         parameters: &[Parameter],
     ) -> Result<Differentiated, InvalidInput> {
         let (count, gravity_m_s2) = (self.modes().len(), self.gravity_m_s2());
-        InvalidInput::unless(gravity_m_s2 == 0.0, "gravity_m_s2", gravity_m_s2, "0 for derivatives")?;
         for (i, parameter) in parameters.iter().enumerate() {
             check_offsets(i, &parameter.offsets)?;
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
@@ -172,12 +177,20 @@ impl Solver {
                     "a list with as many modes as the structure has",
                 )?;
                 neighbour.check()?;
+                InvalidInput::unless(
+                    (neighbour.gravity_m_s2 == 0.0) == (gravity_m_s2 == 0.0),
+                    ("parameters", i, ("neighbours", place, "gravity_m_s2")),
+                    neighbour.gravity_m_s2,
+                    "0 at all neighbours or at none, as for the impact itself",
+                )?;
             }
         }
         let moved = self.moved_by(parameters, start);
         let other = (moved != self.moved()).then(|| self.moving(moved));
         let at_rest = Start::at_rest(count);
-        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings, fall: None };
+        let start = start.unwrap_or(&at_rest);
+        let fall = Fall::new(gravity_m_s2, self.modes(), striker, start)?;
+        let impact = Impact { striker, law, start, settings, fall };
         other.as_ref().unwrap_or(self).along_all(&impact, parameters)
     }
 
@@ -195,7 +208,7 @@ impl Solver {
         }
         let lowered = self.lower(impact);
         let coarser = coarser.unwrap_or_else(|| self.beside(impact, &lowered));
-        let around = Around::new(self, &lowered, parameters);
+        let around = Around::new(self, &lowered, parameters)?;
         let (coarse, found) = both(
             settings.concurrent,
             || self.along(BESIDE, impact, &around, &lowered, &coarser),
@@ -206,8 +219,7 @@ impl Solver {
             Err(why) => return Ok(none(solution, why)),
         };
         let coarse = coarse.map_or(Vec::new(), |(changes, _)| changes);
-        let by_impulse =
-            [mobility(self.modes(), striker) / approach(self.modes(), striker, start), striker.mass_kg.recip()];
+        let by_impulse = [mobility(self.modes(), striker) / self.approach_m_s(impact), striker.mass_kg.recip()];
         let of = |(i, fine): (usize, Result<Changes, NoDerivative>)| {
             let fine = fine?;
             let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
@@ -237,24 +249,28 @@ impl Solver {
         let expansions = &mut Expansions::new(SOLUTIONS[which].0);
         let rounded = if which == ANSWER { 0.0 } else { ROUNDED };
         let found = tangents(&posed, system, stretches, (&around.changes, None), expansions, rounded)?;
-        let end = &stretches.last().ok_or(NoDerivative::Outcome)?.rate;
         let pick = |values: &[f64]| {
             let mut all = vec![0.0; self.modes().len()];
             let places = &system.place[posed::STRUCTURE];
             self.moved().iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
             all
         };
-        let (ended, striker) = (pick(end), &system.links[0].sides[0]);
-        let velocity = |rate: &[f64]| striker.as_ref().map_or(0.0, |side| side.sum(rate));
+        let ends = [&found.amplitude, &found.rate];
+        let (ended, striker) = (pick(ends[1]), &system.links[0].sides[0]);
+        // displacement and velocity of the striker
+        let motion = ends.map(|values| striker.as_ref().map_or(0.0, |side| side.sum(values)));
         let of = |(tangent, d): (Result<Tangent, NoDerivative>, usize)| {
             let tangent = tangent?;
-            let by_mass = striker.as_ref().map_or(0.0, |side| around.weight[d] * end[side.modes.start]);
+            let [dx, dv] = [(ends[0], &tangent.amplitude), (ends[1], &tangent.rate)].map(|(end, change)| {
+                striker.as_ref().map_or(0.0, |side| side.sum(change) + around.weight[d] * end[side.modes.start])
+            });
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let velocities = [velocity(end), velocity(&tangent.rate) + by_mass];
             let by = &around.parameters[d];
-            let restitution = restitution_change(self.modes(), impact, by, velocities, [&ended, &rate]);
-            let numbers = [restitution, tangent.time_s, velocities[1]];
-            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
+            let restitution = match (&impact.fall, &around.falls[d]) {
+                (Some(fall), Some(near)) => change_after_fall(fall, near, Stencil::new(by.offsets), motion, [dx, dv]),
+                _ => restitution_change(self.modes(), impact, by, [motion[1], dv], [&ended, &rate]),
+            };
+            Ok(Changes { numbers: [restitution, tangent.time_s, dv], intervals: tangent.intervals, amplitude, rate })
         };
         Ok((found.tangents.into_iter().zip(0..).map(of).collect(), found.closing_speeds_m_s))
     }
@@ -278,26 +294,45 @@ struct Around<'a> {
     changes: Vec<Change<'a>>,
     /// Change of the weight of the striker's own mode in its motion.
     weight: Vec<f64>,
+    /// The falls of the striker at the neighbours, under gravity.
+    falls: Vec<Option<[Fall; 4]>>,
 }
 
 impl<'a> Around<'a> {
-    fn new(solver: &Solver, lowered: &Lowered, parameters: &'a [Parameter<'a>]) -> Around<'a> {
-        let pose =
-            |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, solver.moved(), striker, start);
-        let of = |by: &'a Parameter<'a>| {
-            let near = by.neighbours.each_ref().map(|at| pose(&at.structure.modes, at.striker, at.start));
+    fn new(solver: &Solver, lowered: &Lowered, parameters: &'a [Parameter<'a>]) -> Result<Around<'a>, InvalidInput> {
+        let mut around = Around { parameters, changes: Vec::new(), weight: Vec::new(), falls: Vec::new() };
+        for by in parameters {
+            let fall = |at: &Posing| Fall::new(at.gravity_m_s2, &at.structure.modes, at.striker, at.start);
+            let falls = by.neighbours.iter().map(fall).collect::<Result<Vec<Option<Fall>>, _>>()?;
+            let near: [Assembly<()>; 4] = array::from_fn(|i| {
+                let Posing { structure, striker, start, .. } = by.neighbours[i];
+                let weight = falls[i].as_ref().map(Fall::weight);
+                posed::assembly((&structure.modes, solver.moved()), striker, start, weight)
+            });
             let posed: [Posed; 4] = array::from_fn(|i| near[i].with_laws(vec![by.neighbours[i].law]));
             let stencil = Stencil::new(by.offsets);
             let weight = |at: &Posing| posed::weight(at.striker, &at.structure.modes);
             let laws = by.changes_law.then(|| vec![by.neighbours.each_ref().map(|at| at.law)]);
-            (
-                Change::new(&lowered.system, posed.each_ref(), laws, stencil),
-                stencil.slope(by.neighbours.each_ref().map(weight)),
-            )
-        };
-        let (changes, weight) = parameters.iter().map(of).unzip();
-        Around { parameters, changes, weight }
+            around.changes.push(Change::new(&lowered.system, posed.each_ref(), laws, stencil));
+            around.weight.push(stencil.slope(by.neighbours.each_ref().map(weight)));
+            let falls: Option<Vec<Fall>> = falls.into_iter().collect();
+            around.falls.push(falls.and_then(|falls| falls.try_into().ok()));
+        }
+        Ok(around)
     }
+}
+
+/// Change of the restitution after a fall, whose striker has this displacement and velocity at the end, and these changes of both.
+fn change_after_fall(
+    fall: &Fall,
+    near: &[Fall; 4],
+    stencil: Stencil<4>,
+    [displacement_m, velocity_m_s]: [f64; 2],
+    changes: [f64; 2],
+) -> f64 {
+    let of_same_motion = stencil.slope(near.each_ref().map(|fall| fall.restitution(displacement_m, velocity_m_s)));
+    let by = fall.restitution_by(displacement_m, velocity_m_s);
+    of_same_motion + by[0] * changes[0] + by[1] * changes[1]
 }
 
 /// Change of `(velocity - rigid(end)) / (speed + rigid(start))`, `rigid` the motion of the structure's rigid-body modes.

@@ -111,6 +111,12 @@ impl Fall {
         square.max(0.0).sqrt()
     }
 
+    /// Its derivatives with respect to displacement (1/m) and velocity (s/m).
+    pub fn restitution_by(&self, displacement_m: f64, velocity_m_s: f64) -> [f64; 2] {
+        let twice = self.arrives_m_s().powi(2) * self.restitution(displacement_m, velocity_m_s);
+        [self.gravity_m_s2 / twice, velocity_m_s / twice]
+    }
+
     /// The height above the undeflected structure at this displacement, as a share of that of the fall.
     pub fn share(&self, displacement_m: f64) -> f64 {
         2.0 * self.gravity_m_s2 * (self.height_m + displacement_m) / self.arrives_m_s().powi(2)

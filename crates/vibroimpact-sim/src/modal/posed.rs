@@ -1,7 +1,7 @@
 //! An impact as an assembly: the structure is one body, the striker another, and they share one contact.
 
 use super::problem::{Mode, Start, Striker, height_m};
-use crate::assembly::{Assembly, Body, Contact, Point};
+use crate::assembly::{Assembly, Body, Contact, Load, Point};
 
 /// Mass of a moving stop relative to the structure, so large that no contact slows it down.
 const IMMOVABLE: f64 = 1e30;
@@ -24,8 +24,13 @@ pub(crate) fn weight(striker: &Striker, modes: &[Mode]) -> f64 {
     mass_kg(striker, modes).map_or(0.0, |mass_kg| mass_kg.sqrt().recip())
 }
 
-/// The impact of a striker on some modes of the structure, without the law of their contact.
-pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start: &Start) -> Assembly<()> {
+/// The impact of a striker, which may have a weight, on some modes of the structure, without the law of their contact.
+pub(crate) fn assembly(
+    (modes, moved): (&[Mode], &[usize]),
+    striker: &Striker,
+    start: &Start,
+    weight: Option<Load>,
+) -> Assembly<()> {
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
     let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();
     let structure = Body {
@@ -42,5 +47,5 @@ pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start
     };
     let sides = [side, Point::OfBody { body: STRUCTURE, shape }];
     let contacts = vec![Contact { sides, gap_m: height_m(modes, start), law: () }];
-    Assembly { bodies, contacts, loads: Vec::new() }
+    Assembly { bodies, contacts, loads: weight.into_iter().collect() }
 }

@@ -442,8 +442,8 @@ impl Solver {
     }
 
     pub(crate) fn lower(&self, impact: &Impact) -> Lowered {
-        let mut assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
-        assembly.loads.extend(impact.fall.as_ref().map(Fall::weight));
+        let weight = impact.fall.as_ref().map(Fall::weight);
+        let assembly = posed::assembly((&self.modes, &self.moved), impact.striker, impact.start, weight);
         let system = System::new(&assembly.with_laws(Vec::new()));
         Lowered { assembly, system }
     }
@@ -525,7 +525,7 @@ impl Solver {
     }
 
     /// Speed with which the bodies meet.
-    fn approach_m_s(&self, impact: &Impact) -> f64 {
+    pub(crate) fn approach_m_s(&self, impact: &Impact) -> f64 {
         impact.fall.map_or_else(|| approach(&self.modes, impact.striker, impact.start), |fall| fall.arrives_m_s())
     }
 

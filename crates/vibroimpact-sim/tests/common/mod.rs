@@ -89,7 +89,7 @@ pub fn ten_parameters<'a>(
 ) -> Vec<Parameter<'a>> {
     let of = |near: &'a [Structure; 4]| Parameter {
         offsets: OFFSETS,
-        neighbours: near.each_ref().map(|structure| Posing { structure, striker, law, start }),
+        neighbours: near.each_ref().map(|structure| Posing { structure, striker, law, start, gravity_m_s2: 0.0 }),
         changes_law: false,
     };
     near.iter().cycle().take(10).map(of).collect()

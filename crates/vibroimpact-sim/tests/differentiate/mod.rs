@@ -214,7 +214,7 @@ fn a_rebound_from_a_wall_changes_with_the_law_alone() {
     let start = Start::at_rest(0);
     let offsets = [-2e-3, -1e-3, 1e-3, 2e-3];
     let near = offsets.map(|more| dashpot(20.0 + more));
-    let posing = |law| Posing { structure: &wall, striker: &striker, law, start: &start };
+    let posing = |law| Posing { structure: &wall, striker: &striker, law, start: &start, gravity_m_s2: 0.0 };
     let parameter = Parameter { offsets, neighbours: near.each_ref().map(|law| posing(law)), changes_law: true };
     let found =
         Solver::new(&wall).unwrap().differentiate(&striker, &dashpot(20.0), None, &settings(1e-11), &[parameter]);

@@ -109,7 +109,13 @@ impl Posed {
     }
 
     pub fn posing(&self) -> Posing<'_> {
-        Posing { structure: &self.structure, striker: &self.striker, law: &self.law, start: &self.start }
+        Posing {
+            structure: &self.structure,
+            striker: &self.striker,
+            law: &self.law,
+            start: &self.start,
+            gravity_m_s2: 0.0,
+        }
     }
 
     pub fn differentiate(&self, tolerance: f64) -> Differentiated {

@@ -75,7 +75,8 @@ impl Scene {
         if self.start.is_some() {
             return Err(InvalidInput::new("start", "{...}", "left out, because the law is for a structure at rest"));
         }
-        self.require_no_gravity("the law leaves gravity out")?;
+        let allowed = "left out, because the law leaves gravity out";
+        InvalidInput::unless(!self.falls(), "gravity_m_s2", self.gravity_m_s2, allowed)?;
         let modes = match modes {
             Some(count) => self.mode_shapes(count)?,
             None if crate::scene::chooses_modes(self) => self.mode_shapes(LAW_MODES)?,

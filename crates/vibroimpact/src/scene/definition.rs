@@ -131,11 +131,6 @@ impl Scene {
         self.start.as_ref().is_some_and(|start| !self.falls() || start.moves())
     }
 
-    /// Refuses gravity, which this does not consider.
-    pub(crate) fn require_no_gravity(&self, why: &str) -> Result<(), InvalidInput> {
-        InvalidInput::unless(!self.falls(), "gravity_m_s2", self.gravity_m_s2, format!("left out, because {why}"))
-    }
-
     /// Reads a scene from JSON text.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ mod text;
 use std::cell::RefCell;
 
 use serde_json::Value;
-use vibroimpact_sim::modal::{Derivatives, NoDerivative, Parameter, Settings, Solution, Solver, Start};
+use vibroimpact_sim::modal::{Derivatives, NoDerivative, Parameter, Settings, Solution, Start};
 
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
@@ -70,7 +70,6 @@ impl Scene {
             let allowed = "a structure with modes, because the derivatives are computed along the motion of the modes";
             return Err(InvalidInput::new("structure", "an infinite one", allowed));
         }
-        self.require_no_gravity("derivatives are not computed under gravity")?;
         match self.model {
             Model::Auto | Model::Modal => {}
             Model::Rigid | Model::Emoc => return closed_form::sensitivity(self, fields),
@@ -113,7 +112,7 @@ fn differentiate(
         let neighbours = at.each_ref().map(|impact| impact.posing(&at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
     }
-    let solver = Solver::new(&base.structure).map_err(in_scene)?;
+    let solver = base.solver()?;
     let Impact { striker, law, start, .. } = base;
     let settings = Settings { tolerance: base.settings.tolerance, ..Settings::default() };
     let found = solver.differentiate(striker, law, start.as_ref(), &settings, &parameters).map_err(in_scene)?;
