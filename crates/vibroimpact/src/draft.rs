@@ -31,6 +31,8 @@ pub struct Draft {
     tree: Value,
     /// The folder of the tables that the scene names.
     folder: PathBuf,
+    /// The file from which it was read; none for a stream or a text.
+    file: Option<PathBuf>,
 }
 
 impl Draft {
@@ -40,7 +42,7 @@ impl Draft {
     /// A file that cannot be read, or text that is neither JSON nor TOML.
     pub fn read(path: &Path) -> Result<Draft, SceneError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
+        Ok(Draft { tree: read_tree(path, A_SCENE)?, folder, file: Some(path.to_owned()) })
     }
 
     /// Reads a stream to its end: JSON if it begins with `{` or if all of it is JSON, TOML otherwise. Messages refer to the
@@ -69,7 +71,7 @@ impl Draft {
                 read => read?,
             },
         };
-        Ok(Draft { tree, folder: PathBuf::new() })
+        Ok(Draft { tree, folder: PathBuf::new(), file: None })
     }
 
     /// Sets one field, as in `striker.speed_m_s=2`, `structure.segments[0].material=steel` or
@@ -97,6 +99,13 @@ impl Draft {
     /// The present fields, and the folder of the tables that they name.
     pub(crate) fn tree(&self) -> (&Value, &Path) {
         (&self.tree, &self.folder)
+    }
+
+    /// The files from which the scene is read: its own, if there is one, and the tables that it names.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut tables = Vec::new();
+        collect_tables(&self.tree, &mut tables);
+        self.file.iter().cloned().chain(tables.into_iter().map(|name| self.folder.join(name))).collect()
     }
 
     /// The scene of one impact.
@@ -127,6 +136,18 @@ impl Draft {
         let mut scene = AnyScene::from_value(&self.tree)?;
         scene.read_tables(&self.folder)?;
         Ok(scene)
+    }
+}
+
+/// The names of all tables below a field. In every object of a scene that has one, it is the value of `file`.
+fn collect_tables<'a>(field: &'a Value, tables: &mut Vec<&'a str>) {
+    match field {
+        Value::Object(fields) => {
+            tables.extend(fields.get("file").and_then(Value::as_str));
+            fields.values().for_each(|field| collect_tables(field, tables));
+        }
+        Value::Array(items) => items.iter().for_each(|item| collect_tables(item, tables)),
+        _ => {}
     }
 }
 

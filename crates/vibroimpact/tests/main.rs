@@ -18,6 +18,7 @@ mod gallery;
 mod gallery_physics;
 mod identify;
 mod infinite_beam;
+mod kept_inputs;
 mod law_command;
 mod model;
 mod net_restitution;

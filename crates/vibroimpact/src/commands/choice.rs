@@ -59,8 +59,9 @@ pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Fail
 
 /// Runs `compare` and returns the text to print.
 pub fn compare(CompareArguments { scene, json, picture }: CompareArguments) -> Result<String, Failure> {
-    let scene = scene.impact()?;
-    picture.require_room(&[])?;
+    let draft = scene.draft()?;
+    let scene = draft.impact()?;
+    picture.require_room(&draft.files(), &[])?;
     let comparison = scene.compare()?;
     let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) + &signature() };
     with_files(printed, |printed| {

@@ -85,7 +85,7 @@ fn toml_file(name: &str) -> Result<PathBuf, String> {
 
 /// Runs `demo` and returns the text to print.
 pub fn demo(DemoArguments { changes, extent, products }: DemoArguments) -> Result<String, Failure> {
-    products.require_room(&[extent.output()])?;
+    products.require_room(&[], &[extent.output()])?;
     let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?, "the built-in scene")?.any()?;
     let json = products.json;
     let printed = simulate::answer(scene, extent, &products)?;

@@ -66,14 +66,16 @@ pub struct Arguments {
 /// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { data, scene, changes, free, starts, level, candidates, json, picture } = arguments;
-    picture.require_room(&[])?;
-    let scene = changes.draft(&scene)?.impact()?;
-    let data = Data::read(&data)?;
+    let draft = changes.draft(&scene)?;
+    let scene = draft.impact()?;
+    let measured = Data::read(&data)?;
+    let inputs = [draft.files(), measured.files(&data), candidates.iter().cloned().collect()].concat();
+    picture.require_room(&inputs, &[])?;
     let candidates = candidates.map(|path| Data::read_candidates(&path)).transpose()?;
     let free: Vec<Free> = free.iter().map(|text| Free::parse(text)).collect::<Result<_, InvalidInput>>()?;
-    let found = identify::identify(&scene, &data, &free, &Request { level, starts, candidates })?;
+    let found = identify::identify(&scene, &measured, &free, &Request { level, starts, candidates })?;
     let printed = if json { export::json(&found)? } else { identify::text(&found) + &signature() };
     with_files(printed, |printed| {
-        picture.draw(printed, json, || Ok(identify::picture(&headline(&scene)?, &data, &found)))
+        picture.draw(printed, json, || Ok(identify::picture(&headline(&scene)?, &measured, &found)))
     })
 }

@@ -64,20 +64,21 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     match arguments {
         Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
         Arguments { scene: Some(path), changes, products, .. } => {
-            let scene = changes.draft(&path)?.impact()?;
+            let draft = changes.draft(&path)?;
+            let scene = draft.impact()?;
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
                 let allowed = "infinite-beam; vibroimpact simulate solves scenes of every kind".to_owned();
                 return Err(InvalidInput::new(["structure", "kind"], kind, allowed).into());
             }
-            products.require_room(&[])?;
+            products.require_room(&draft.files(), &[])?;
             let (scale, solution) = scene.solve_infinite()?;
             let json = export::json(&Summary::new(&solution, Some(&scale)))?;
             of_scene(&scene, (&scale, &solution), &[], None, json, &products)
         }
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
-            products.require_room(&[])?;
+            products.require_room(&[], &[])?;
             let solution = solve(Structure::Beam, s, &Settings::default())?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;

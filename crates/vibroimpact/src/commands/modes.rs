@@ -39,8 +39,9 @@ pub struct Arguments {
 
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
-    let scene = scene.impact()?;
-    picture.require_room(&[])?;
+    let draft = scene.draft()?;
+    let scene = draft.impact()?;
+    picture.require_room(&draft.files(), &[])?;
     let count = count.unwrap_or(match &scene.structure {
         Structure::Modal(listed) => COUNT.min(listed.omega_rad_s.len()),
         _ => COUNT,

@@ -76,8 +76,9 @@ pub struct Arguments {
 
 /// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
-    arguments.picture.require_room(&[("--csv", arguments.csv.as_deref())])?;
-    let scene = arguments.scene.bodies()?;
+    let draft = arguments.scene.draft()?;
+    arguments.picture.require_room(&draft.files(), &[("--csv", arguments.csv.as_deref())])?;
+    let scene = draft.bodies()?;
     let headline = assembly::headline(&scene, &scene.pose()?);
     let settings = OrbitSettings {
         forcing_periods: arguments.periods,

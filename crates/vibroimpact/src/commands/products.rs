@@ -46,11 +46,12 @@ pub struct Picture {
 pub type Output<'a> = (&'static str, Option<&'a Path>);
 
 impl Picture {
-    /// Rejects options, these and other ones, that would replace existing files or each other's, before anything is solved.
-    pub fn require_room(&self, others: &[Output]) -> Result<(), InvalidInput> {
+    /// Rejects options, these and other ones, that would replace `inputs`, existing files or each other's, before anything is
+    /// solved.
+    pub fn require_room(&self, inputs: &[PathBuf], others: &[Output]) -> Result<(), InvalidInput> {
         let outputs = [&[("--plot", self.plot.as_deref())], others].concat();
         require_apart(&outputs)?;
-        outputs.iter().try_for_each(|(option, path)| require_free(option, *path, self.force))
+        require_files(&outputs, inputs, self.force)
     }
 
     /// Rejects a figure where there is none to draw.
@@ -95,6 +96,26 @@ pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<()
     }
 }
 
+/// Rejects options that name a file which the command reads, or an existing file.
+fn require_files(outputs: &[Output], inputs: &[PathBuf], force: bool) -> Result<(), InvalidInput> {
+    for (option, path) in outputs.iter().filter_map(|(option, path)| Some((option, (*path)?))) {
+        if let Some(input) = find_input(path, inputs) {
+            let allowed =
+                format!("the name of another file, because the command reads this one as {}", input.display());
+            return Err(InvalidInput::new(*option, path.display().to_string(), allowed));
+        }
+        require_free(option, Some(path), force)?;
+    }
+    Ok(())
+}
+
+/// The input that an output would replace. Links and other spellings of a path do not hide it; an output that is not there yet
+/// replaces nothing.
+fn find_input<'a>(output: &Path, inputs: &'a [PathBuf]) -> Option<&'a Path> {
+    let place = output.canonicalize().ok()?;
+    inputs.iter().map(PathBuf::as_path).find(|input| input.canonicalize().is_ok_and(|input| input == place))
+}
+
 /// Rejects options of which one names the file of another, or a file in its folder.
 fn require_apart(outputs: &[Output]) -> Result<(), InvalidInput> {
     let given: Vec<(&str, &Path)> = outputs.iter().filter_map(|(option, path)| Some((*option, (*path)?))).collect();
@@ -137,10 +158,19 @@ fn page_file(name: &str) -> Result<PathBuf, String> {
 }
 
 impl Products {
-    /// Rejects options, these and other ones, that would replace existing files or each other's, before anything is solved.
-    pub fn require_room(&self, others: &[Output]) -> Result<(), InvalidInput> {
+    /// Rejects options, these and other ones, that would replace `inputs`, existing files or each other's, before anything is
+    /// solved.
+    pub fn require_room(&self, inputs: &[PathBuf], others: &[Output]) -> Result<(), InvalidInput> {
         if let Some(folder) = &self.out {
             require_folder("--out", folder)?;
+            // files of an earlier result are replaced or removed, whether or not this result has them
+            let replaced =
+                Files::NAMES.into_iter().find_map(|name| Some((name, find_input(&folder.join(name), inputs)?)));
+            if let Some((name, input)) = replaced {
+                let input = input.display();
+                let allowed = format!("another folder, because the command reads {input}, which is {name} in this one");
+                return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
+            }
             if let Some(name) = Files::NAMES.into_iter().find(|name| !self.force && is_there(&folder.join(name))) {
                 let allowed = format!("a folder without {name}, which this one contains; --force replaces it");
                 return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
@@ -148,7 +178,7 @@ impl Products {
         }
         let files = [&[("--plot", self.plot.as_deref()), ("--report", self.report.as_deref())], others].concat();
         require_apart(&[&[("--out", self.out.as_deref())], &files[..]].concat())?;
-        files.iter().try_for_each(|(option, path)| require_free(option, *path, self.force))
+        require_files(&files, inputs, self.force)
     }
 
     /// Writes the requested files and adds lines about them to the text; none if the result is JSON. All files are completed in

@@ -42,8 +42,9 @@ pub struct Arguments {
 
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, by, of, json, picture }: Arguments) -> Result<String, Failure> {
-    picture.require_room(&[])?;
-    let (printed, figure) = match scene.any()? {
+    let draft = scene.draft()?;
+    picture.require_room(&draft.files(), &[])?;
+    let (printed, figure) = match draft.any()? {
         AnyScene::Impact(scene) => {
             let found = scene.sensitivity(&by)?;
             let of = of.as_deref().unwrap_or("restitution");

@@ -109,8 +109,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, Failure> {
-    let scene = scene.any()?;
-    products.require_room(&[extent.output()])?;
+    let draft = scene.draft()?;
+    let scene = draft.any()?;
+    products.require_room(&draft.files(), &[extent.output()])?;
     answer(scene, extent, &products)
 }
 

@@ -4,7 +4,6 @@ use std::io::stdin;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use vibroimpact::assembly::{AnyScene, AssemblyScene};
 use vibroimpact::draft::Draft;
 use vibroimpact::text::{printable, shorten};
 use vibroimpact::{Scene, SceneError};
@@ -36,17 +35,7 @@ impl SceneSource {
 
     /// The scene of one impact.
     pub fn impact(&self) -> Result<Scene, SceneError> {
-        self.changes.draft(&self.scene)?.impact()
-    }
-
-    /// The scene of bodies.
-    pub fn bodies(&self) -> Result<AssemblyScene, SceneError> {
-        self.changes.draft(&self.scene)?.bodies()
-    }
-
-    /// The scene, of either kind.
-    pub fn any(&self) -> Result<AnyScene, SceneError> {
-        self.changes.draft(&self.scene)?.any()
+        self.draft()?.impact()
     }
 }
 

@@ -49,7 +49,14 @@ impl Data {
     /// # Errors
     /// A file that cannot be read; a column or a cell that cannot be used, by line and name.
     pub fn read(path: &Path) -> Result<Data, SceneError> {
-        Data::from_table(&read_bytes(path)?, path.parent().unwrap_or(Path::new("")))
+        Data::from_table(&read_bytes(path)?, folder_of(path))
+    }
+
+    /// The files of a table that was read from `path`: this one, and the force histories that it names.
+    pub fn files(&self, path: &Path) -> Vec<PathBuf> {
+        let histories = self.rows.iter().filter_map(|row| row.force.as_ref());
+        let named = histories.map(|(record, _)| folder_of(path).join(&record.file));
+        std::iter::once(path.to_owned()).chain(named).collect()
     }
 
     /// Reads the table from the bytes of a file, and the force histories that it names from `folder` or below.
@@ -224,6 +231,11 @@ impl Columns {
         }
         Ok(row)
     }
+}
+
+/// The folder of the force histories that the table at `path` names.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 fn deviation(cells: &Cells, place: Option<usize>, name: &str) -> Result<Option<f64>, InvalidInput> {

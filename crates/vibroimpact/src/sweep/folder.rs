@@ -232,7 +232,11 @@ fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
 /// # Errors
 /// The folder is that of another sweep, or of something else.
 fn has_begun(path: &Path, record: &Record) -> Result<bool, SweepError> {
-    if let Some(found) = read_json::<Record>(&path.join(RECORD))? {
+    let found = read_json::<Record>(&path.join(RECORD)).map_err(|fault| match fault {
+        SweepError::Refused(text) => SweepError::Refused(format!("{text}; choose another folder for the results")),
+        other => other,
+    })?;
+    if let Some(found) = found {
         return same_sweep(path, &found, record).map(|()| true);
     }
     match WRITTEN.into_iter().find(|name| path.join(name).symlink_metadata().is_ok()) {
