@@ -200,11 +200,7 @@ fn an_impact_is_animated() {
         "{} bytes",
         svg.len()
     );
-    let values = |attribute: &str| -> Vec<String> {
-        let part = svg.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
-        part.split("values=\"").nth(1).unwrap().split('"').next().unwrap().split(';').map(str::to_owned).collect()
-    };
-    let (beam, ball) = (values("d"), values("cy"));
+    let (beam, ball) = (animated(&svg, "d"), animated(&svg, "cy"));
     assert_eq!((beam.len(), ball.len()), (241, 241));
     // The largest force is that of the result, although it lasts for less than one frame.
     assert!(told.contains("2.133 kN") && svg.contains(">2.133 kN<"), "{told}");
@@ -222,6 +218,29 @@ fn an_impact_is_animated() {
     }
     assert!(refused(&run(folder.path(), &["demo", "--animate", "a.gif"])).contains("ends in .svg"));
     assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));
+}
+
+/// In a short time the ball pushes the beam in by much less than it moves, and in a long one no frame shows a contact.
+#[test]
+fn an_animation_stays_in_its_picture_however_long_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    for until_s in ["1e-30", "1e-12", "1e-6", "1e-4", "0.02", "1e12"] {
+        stdout(&run(folder.path(), &["demo", "--animate", "a.svg", "--until", until_s, "--force"]));
+        let svg = fs::read_to_string(folder.path().join("a.svg")).unwrap();
+        let (beam, ball) = (animated(&svg, "d"), animated(&svg, "cy"));
+        let points = beam.iter().flat_map(|line| line.split(['M', 'L', ',']).skip(1));
+        let numbers: Vec<f64> = points.map(|number| number.parse().unwrap()).collect();
+        // the line of the beam at rest is at 160, and the axis of the force begins at 265
+        assert!(numbers.chunks(2).all(|point| (85.0..=235.0).contains(&point[1])), "{until_s}");
+        // a ball that leaves upwards is out of sight just above the picture
+        assert!(ball.iter().all(|y| (-44.0..=240.0).contains(&y.parse::<f64>().unwrap())), "{until_s}: {ball:?}");
+    }
+}
+
+/// The values of an animated attribute, frame by frame.
+fn animated(svg: &str, attribute: &str) -> Vec<String> {
+    let part = svg.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
+    part.split("values=\"").nth(1).unwrap().split('"').next().unwrap().split(';').map(str::to_owned).collect()
 }
 
 /// Compares a figure of the book with the one that the program draws.

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use contact_models::ContactLaw;
-use vibroimpact_sim::modal::History;
+use vibroimpact_sim::modal::{History, Sample};
 
 use crate::deflection::Deflection;
-use crate::text::quantity;
+use crate::text::{quantity, significant};
 
 /// Width and height (px), the ends of the beam, and the line of the beam at rest.
 const SIZE: [f64; 2] = [760.0, 380.0];
@@ -34,8 +34,15 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
     let length_m = places.last().copied().unwrap_or(1.0);
     let until_s = time_s.last().copied().unwrap_or(0.0);
     let x = |place_m: f64| ENDS[0] + (ENDS[1] - ENDS[0]) * place_m / length_m;
-    let size = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
-    let largest_m = size(&mut structure_m.iter().flatten().copied());
+    // a contact is shorter than the interval between two frames, and is drawn step by step
+    let samples: Vec<Sample> = history.times(until_s, INTERVALS).into_iter().map(|t| history.at(t)).collect();
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+    // Everything fits that moves in the picture: the beam, also between the frames, and the ball while it pushes the beam in, which
+    // in a short time is much more. The ball may leave the picture upwards.
+    let frames_m = structure_m.iter().flatten().copied();
+    let between_m = samples.iter().map(|sample| sample.structure_displacement_m);
+    let inwards_m = striker_m.iter().map(|u| u.min(0.0));
+    let largest_m = largest(&mut frames_m.chain(between_m).chain(inwards_m));
     let moves = largest_m > STILL_M;
     let enlarged = if moves { LARGEST / largest_m } else { 1.0 };
     // results count displacements positive towards the ball, which is above
@@ -50,13 +57,11 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
         .collect();
     let balls: Vec<String> =
         striker_m.iter().map(|u| format!("{:.1}", (y(*u) - BALL - 2.0).max(-2.0 * BALL))).collect();
-    // a contact is shorter than the interval between two frames, and is drawn step by step
-    let force: Vec<(f64, f64)> =
-        history.times(until_s, INTERVALS).into_iter().map(|t| (t, history.at(t).force_n)).collect();
-    let peak_n = size(&mut force.iter().map(|(_, f)| *f));
-    let force: Vec<String> = force
+    let peak_n = largest(&mut samples.iter().map(|sample| sample.force_n));
+    let share = |force_n: f64| if peak_n > 0.0 { force_n / peak_n } else { 0.0 };
+    let force: Vec<String> = samples
         .iter()
-        .map(|(t, f)| format!("{:.1},{:.1}", x(length_m * t / until_s), FORCE[0] - FORCE[1] * f / peak_n))
+        .map(|s| format!("{:.1},{:.1}", x(length_m * (s.time_s / until_s)), FORCE[0] - FORCE[1] * share(s.force_n)))
         .collect();
     let times = |attribute: &str, values: &[String]| {
         let values = values.join(";");
@@ -65,7 +70,7 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
         )
     };
     let deflection = match moves {
-        true => format!("deflection enlarged {:.1} times", enlarged * length_m / (ENDS[1] - ENDS[0])),
+        true => format!("deflection enlarged {} times", significant(enlarged * length_m / (ENDS[1] - ENDS[0]), 3)),
         false => "no deflection".to_owned(),
     };
     let [width, height] = SIZE;
