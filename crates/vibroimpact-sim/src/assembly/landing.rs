@@ -142,7 +142,10 @@ impl<'a> March<'a> {
             return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
         self.watch_panel(&mut panel, &mut solved);
-        // this panel may have passed over an earlier zero of the same event function, or over another event
+        // This panel may have passed over an earlier zero of the same event function, or over another event. Each event ends the panel at
+        // most once, so there are no more rounds than event functions: events that exchange their order from one solution to the next
+        // are as close to each other as the times are known, and after the first of them the other one follows at once.
+        let mut passed = Vec::new();
         while let Judgement::Meets(other, place) = self.judge_solved(&panel, &solved, Some(crossing)) {
             if other == crossing && place == 0.0 {
                 break;
@@ -153,12 +156,16 @@ impl<'a> March<'a> {
                 self.level += 1;
                 return;
             }
+            if passed.contains(&other) {
+                break;
+            }
             // the places of both events are not known well enough to tell which is the first, but their times are
             let Some(at) = panel.contacts.iter().position(|c| *c == other.contact) else { break };
             let (expected, longest) = (place * solved.length, solved.length);
             let found = self.panel_to_event(&panel, other, at, expected, longest);
             let Some(mut earlier) = found.filter(|found| found.length < longest) else { break };
             panel.look(&mut earlier);
+            passed.push(crossing);
             (crossing, solved) = (other, earlier);
         }
         let length = solved.length;
