@@ -17,14 +17,15 @@
 //! Without the feature `alloc` the crate needs neither `std` nor an allocator. Names are then literals, and a path consists of
 //! its three innermost steps.
 #![no_std]
-// Without an allocator a literal is a text already.
-#![cfg_attr(not(feature = "alloc"), allow(clippy::useless_conversion))]
+// Without an allocator a literal is a text already, and an error holds its path itself.
+#![cfg_attr(not(feature = "alloc"), allow(clippy::useless_conversion, clippy::result_large_err))]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
 mod error;
 mod extreme;
+#[cfg(feature = "alloc")]
 mod names;
 mod path;
 mod told;

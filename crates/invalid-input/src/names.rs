@@ -1,7 +1,7 @@
 //! The names of a fixed set of values.
 
 /// Gives an enum without data its names: `as_str`, [`Display`](core::fmt::Display) and [`FromStr`](core::str::FromStr), from
-/// one list. A text that is none of them is an error of the named field. The calling crate must have the feature `alloc`.
+/// one list. A text that is none of them is an error of the named field. It needs the feature `alloc`.
 ///
 /// ```
 /// #[derive(Debug, Clone, Copy, PartialEq)]
