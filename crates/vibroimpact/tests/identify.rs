@@ -656,7 +656,7 @@ fn bad_input_is_refused_by_name() {
             good,
             "structure.damping_ratios[1]=0..2e6",
             "--free structure.damping_ratios[1] = 0.0..2000000.0 is not allowed; it must be low..high with two values that the \
-             field can have, each 0 up to 1e6",
+             field can have, each a number from 0 to 1e6",
         ),
     ] {
         let folder = tempfile::tempdir().unwrap();

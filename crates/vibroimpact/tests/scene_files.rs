@@ -402,6 +402,18 @@ fn a_table_of_modes_is_read_from_the_folder_of_the_scene() {
         ("tip,omega_rad_s\n1,\n", "tip", "modes.csv, line 2, omega_rad_s is missing"),
         ("tip,omega_rad_s,damping_ratio\n1,10,nan\n", "tip", "modes.csv, line 2, damping_ratio = nan"),
         ("tip,omega_rad_s,modal_mass_kg\n1,10,0\n", "tip", "modes.csv, line 2, modal_mass_kg = 0.0"),
+        // beyond the ranges of the solver, which no list of a table repeats
+        ("tip,omega_rad_s\n1,10\n1,1e200\n", "tip", "modes.csv, line 3, omega_rad_s = 1e+200 is not allowed"),
+        (
+            "tip,frequency_hz\n1,10\n1,1e200\n",
+            "tip",
+            "modes.csv, line 3, frequency_hz = 1e+200 is not allowed; it must be such that the angular frequency in rad/s, now 6.28",
+        ),
+        (
+            "tip,side,omega_rad_s,modal_mass_kg\n1,3,10,1e-300\n",
+            "tip",
+            "modes.csv, line 2, side = 3.0 is not allowed; it must be such that the shape over the square root of modal_mass_kg",
+        ),
         ("tip,tip,omega_rad_s\n1,1,10\n", "tip", "modes.csv, column tip = 2 columns"),
         (
             "tip,omega_rad_s,frequency_hz\n1,1,10\n",

@@ -146,7 +146,7 @@ impl Structure {
                 return fault("omega_rad_s", mode.omega_rad_s, OMEGA_ALLOWED);
             }
             if !(0.0..=1e6).contains(&mode.damping_ratio) {
-                return fault("damping_ratio", mode.damping_ratio, "0 up to 1e6");
+                return fault("damping_ratio", mode.damping_ratio, "a number from 0 to 1e6");
             }
             if mode.shape.is_nan() || mode.shape.abs() > SCALE_MAX {
                 return fault("shape", mode.shape, "a finite number of at most 1e30 in size");

@@ -6,9 +6,10 @@ use invalid_input::{InvalidInput, Path, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use vibroimpact_sim::modal::{Mode, Solver, Structure};
+use vibroimpact_sim::modal::{Mode, Structure};
 
 use super::error::require_positive;
+use super::extreme::such_that;
 use super::fields;
 use super::json::{named_objects, number, read_beside};
 use super::sets::none_stated;
@@ -224,10 +225,8 @@ impl Modal {
         let modes: Vec<Mode> = (0..listed).map(mode).collect();
         // the solver checks the ranges; its error is reported with the list that contains the number
         let structure = Structure { modes };
-        match Solver::new(&structure) {
-            Ok(_) => Ok(self.by_frequency().into_iter().map(|listed| structure.modes[listed]).collect()),
-            Err(fault) => Err(self.in_lists(seen, fault)),
-        }
+        structure.check().map_err(|fault| self.in_lists(seen, fault))?;
+        Ok(self.by_frequency().into_iter().map(|listed| structure.modes[listed]).collect())
     }
 
     fn in_lists(&self, seen: &Seen, fault: InvalidInput) -> InvalidInput {
@@ -237,8 +236,14 @@ impl Modal {
             "damping_ratio" => ("damping_ratios".into(), self.damping_ratios.as_slice()),
             _ => ("omega_rad_s".into(), self.omega_rad_s.as_slice()),
         };
+        let allowed = match quantity.as_str() {
+            "shape" if !self.modal_mass_kg.is_empty() => {
+                such_that("the shape over the square root of modal_mass_kg", &fault)
+            }
+            _ => fault.allowed,
+        };
         let (field, value) = ((list, *k).into(), values.get(*k).map(|value| number(*value).into()));
-        InvalidInput { field, value, ..fault }
+        InvalidInput { field, value, allowed, ..fault }
     }
 
     /// Whether a compliance at a point is stated, with any value.

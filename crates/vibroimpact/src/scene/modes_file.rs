@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::{Component, Path};
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::SceneError;
+use super::extreme::such_that;
 use super::fields;
 use super::modal::{Modal, Point};
-use crate::input::{Row, Table, read_bytes};
+use crate::input::{Table, read_bytes};
 
 /// A structure given by its modes in a table of comma-separated values. The columns, in any order:
 ///
@@ -94,20 +95,15 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
             "at least 1; the table has one line for each mode below the line of names",
         ));
     }
-    let list = |place: Option<usize>, name: &str, allowed: (&str, fn(f64) -> bool)| match place {
+    let list = |place: Option<usize>, name: &str| match place {
         None => Ok(Vec::new()),
-        Some(place) => table.rows.iter().map(|row| within(row, place, name, allowed)).collect(),
+        Some(place) => table.rows.iter().map(|row| row.number(place, name)).collect(),
     };
-    let not_negative: (&str, fn(f64) -> bool) = (fields::NOT_NEGATIVE, |value| value >= 0.0);
-    let omega = list(Some(frequency), name, not_negative)?;
+    let omega: Vec<f64> = list(Some(frequency), name)?;
     let mut modal = Modal {
         omega_rad_s: omega.iter().map(|value| to_omega * value).collect(),
-        damping_ratios: list(
-            damping,
-            "damping_ratio",
-            (fields::DAMPING, |value| (0.0..=fields::MOST_DAMPING).contains(&value)),
-        )?,
-        modal_mass_kg: list(mass, "modal_mass_kg", (fields::POSITIVE, |value| value > 0.0))?,
+        damping_ratios: list(damping, "damping_ratio")?,
+        modal_mass_kg: list(mass, "modal_mass_kg")?,
         ..Modal::default()
     };
     let taken = [Some(frequency), damping, mass];
@@ -119,20 +115,36 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
                 "in the first line of the table",
             ));
         }
-        let shape = list(Some(place), name, ("a finite number", |_| true))?;
+        let shape = list(Some(place), name)?;
         modal.points.insert(name.to_owned(), Point { shape, ..Point::default() });
     }
     if modal.points.is_empty() {
         return Err(InvalidInput::missing("a column with the shapes at a point", format!("in {NEEDED}")));
     }
+    for point in modal.points.keys() {
+        modal.modes(Some(point)).map_err(|fault| in_table(&table, name, fault))?;
+    }
     Ok(modal)
 }
 
-fn within(row: &Row, place: usize, name: &str, allowed: (&str, fn(f64) -> bool)) -> Result<f64, InvalidInput> {
-    let value = row.number(place, name)?;
-    if allowed.1(value) {
-        Ok(value)
-    } else {
-        Err(row.fault(InvalidInput::new(name, super::json::number(value), allowed.0)))
-    }
+/// An error in the lists of modes as one in the table from which they were read: the line of the mode, and the column of the list.
+fn in_table(table: &Table, frequency: &str, fault: InvalidInput) -> InvalidInput {
+    let (column, line) = match fault.field.steps() {
+        [.., Step::Field(point), Step::Field(list), Step::Index(k)] if list == "shape" => (point.as_str(), *k),
+        [.., Step::Field(list), Step::Index(k)] => match list.as_str() {
+            "omega_rad_s" => (frequency, *k),
+            "damping_ratios" => ("damping_ratio", *k),
+            same => (same, *k),
+        },
+        _ => return fault,
+    };
+    let (Some(row), Some(place)) = (table.rows.get(line), table.header.iter().position(|name| name == column)) else {
+        return fault;
+    };
+    let allowed = match column {
+        "frequency_hz" => such_that("the angular frequency in rad/s", &fault),
+        _ => fault.allowed,
+    };
+    let value = row.number(place, column).map_or_else(|_| row.text(place).to_owned(), super::json::number);
+    row.fault(InvalidInput::new(column, value, allowed))
 }
