@@ -492,3 +492,30 @@ fn a_contact_closes_on_time_while_another_opens() {
         }
     }
 }
+
+/// A load of 1e9 N presses three blocks together that have met at a walking pace. Its impulse is so much larger than the momentum with
+/// which they met that the rounding of the forces alone exceeds a tight tolerance, which no shorter panel can change.
+#[test]
+fn a_load_far_above_the_momentum_of_the_contact_takes_no_more_steps_than_its_forces_need() {
+    let force_n = [-9.81, -9.81, -9.81 - 1e9];
+    let under = |i: usize| if i == 0 { Point::Ground } else { on(i - 1, &[1.0]) };
+    let law: Law = KelvinVoigt::new(1e6, 400.0).unwrap().into();
+    let pressed = Assembly {
+        bodies: [0.002, 0.004, 0.006].map(|place_m| Body::mass(1.0, place_m, 0.0)).into(),
+        contacts: (0..3).map(|i| Contact { sides: [on(i, &[1.0]), under(i)], gap_m: 0.0, law }).collect(),
+        loads: (0..3)
+            .map(|body| Load { body, shape: vec![1.0], force: Force::Constant { force_n: force_n[body] } })
+            .collect(),
+    };
+    for tolerance in [1e-9, 1e-10, 1e-12] {
+        let settings = Settings { tolerance, stop_at_rest: false, ..Settings::until(1.0) };
+        let found = run(&pressed, &settings, &mut ()).unwrap();
+        let steps = found.counts.steps() + found.counts.rejected_steps;
+        assert!(steps < 4_000, "{tolerance:e}: {steps} steps");
+        // the blocks have come to rest, and all impulse of the loads has reached the ground; the largest force is that of DOP853
+        let ground = &found.contacts[0].statistics;
+        let impulse_n_s: f64 = -force_n.iter().sum::<f64>();
+        assert!((ground.impulse_n_s / impulse_n_s - 1.0).abs() < 1e-14, "{}", ground.impulse_n_s);
+        assert!((ground.largest_force_n / 1.923_897_80e9 - 1.0).abs() < 1e-8, "{}", ground.largest_force_n);
+    }
+}

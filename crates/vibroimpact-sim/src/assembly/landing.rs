@@ -5,6 +5,7 @@ use super::collocate::{Collocated, Unknown};
 use super::first_panel::SINGULAR;
 use super::judge::{Judgement, NEAR_END};
 use super::motion::{Crossing, ExpectedEvent, March};
+use super::rounding::above_rounding;
 use super::terminal::{Solved, TerminalPanel};
 use super::trial::{NEWTON_SHARE, Trial};
 use crate::panel::ends::Ends;
@@ -321,7 +322,7 @@ impl<'a> March<'a> {
     fn excess(&self, panel: &TerminalPanel, solved: &Solved) -> f64 {
         let of = |(i, own): (usize, &Collocated)| {
             let (truncation, end) = (own.ends.truncation(&own.quotient(&solved.force[i])), solved.end[i]);
-            self.error(panel.contacts[i], truncation, solved.length, (end[0], end[1]))
+            self.error(panel.contacts[i], above_rounding(truncation, &own.force), solved.length, (end[0], end[1]))
         };
         solved.collocated.iter().enumerate().map(of).fold(0.0, f64::max)
     }

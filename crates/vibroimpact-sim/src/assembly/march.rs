@@ -10,6 +10,7 @@ use super::judge::Judgement;
 use super::ledger::Account;
 use super::motion::{ExpectedEvent, GROWTH, March};
 use super::rest;
+use super::rounding::above_rounding;
 use super::solution::{Outcome, Reason};
 use super::state::State;
 use super::terminal::SHORT;
@@ -197,7 +198,8 @@ impl<'a> March<'a> {
             let (solved, end) = (&trial.solved[i], trial.end[i]);
             let quotient = solved.quotient(&trial.force[i]);
             let defect = (self.force_at(c, end) - quotient.at(1.0)).abs();
-            error = error.max(self.error(c, solved.ends.truncation(&quotient).max(defect), h, end));
+            let error_n = above_rounding(solved.ends.truncation(&quotient).max(defect), &solved.force);
+            error = error.max(self.error(c, error_n, h, end));
         }
         error
     }
