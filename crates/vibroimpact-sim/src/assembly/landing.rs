@@ -143,9 +143,9 @@ impl<'a> March<'a> {
             return self.refine((self.level + 1).max(self.tables.steps.level_within(longest)));
         };
         self.watch_panel(&mut panel, &mut solved);
-        // This panel may have passed over an earlier zero of the same event function, or over another event. Each event ends the panel at
-        // most once, so there are no more rounds than event functions: events that exchange their order from one solution to the next
-        // are as close to each other as the times are known, and after the first of them the other one follows at once.
+        // This panel may have passed over an earlier zero of the same event function, or over another event. An event function is a
+        // polynomial with less than Q zeros on the panel, and so often at most it ends the panel: events that exchange their order from
+        // one solution to the next are as close to each other as the times are known, and the other one follows at once.
         let mut passed = Vec::new();
         while let Judgement::Meets(other, place) = self.judge_solved(&panel, &solved, Some(crossing)) {
             if other == crossing && place == 0.0 {
@@ -157,7 +157,7 @@ impl<'a> March<'a> {
                 self.level += 1;
                 return;
             }
-            if passed.contains(&other) {
+            if passed.iter().filter(|one| **one == other).count() >= Q {
                 break;
             }
             // the places of both events are not known well enough to tell which is the first, but their times are

@@ -143,9 +143,9 @@ impl Solver {
     /// // by the mass of the ball
     /// let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
     /// let balls = offsets.map(|more| Striker { mass_kg: 0.1 + more, speed_m_s: 1.0 });
-    /// let neighbours =
-    ///     balls.each_ref().map(|striker| Posing { structure: &structure, striker, law: &law, start: &start, gravity_m_s2: 0.0 });
-    /// let mass = Parameter { offsets, neighbours, changes_law: false };
+    /// let posing =
+    ///     |striker| Posing { structure: &structure, striker, law: &law, start: &start, gravity_m_s2: 0.0 };
+    /// let mass = Parameter { offsets, neighbours: balls.each_ref().map(posing), changes_law: false };
     /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
     /// let solved = Solver::new(&structure)?.differentiate(&ball, &law, None, &Settings::default(), &[mass])?;
     /// // two rigid bodies of m and M: (1 - m/M)/(1 + m/M)
