@@ -237,3 +237,25 @@ fn integrals_of_the_force_are_those_of_its_samples() {
         }
     }
 }
+
+/// Under a strong dashpot an impact on a beam has dozens of contacts of thousands of steps. A history gives a bounded number of times, which
+/// keep the largest force of every contact.
+#[test]
+fn a_history_of_very_many_steps_is_drawn_at_some_of_them() {
+    let solver = Solver::new(&pinned(300, 0.01, 0.5)).unwrap();
+    let law = KelvinVoigt::new(2e6, 1e5).unwrap();
+    let striker = Striker { mass_kg: 0.2, speed_m_s: 0.5 };
+    let (solution, history) = solver.record(&striker, &law, None, &settings(1e-6)).unwrap();
+    assert!(9 * solution.counts.contact_steps > 30_000, "{:?}", solution.counts);
+    let (end_s, intervals) = (history.duration_s(), 100);
+    let times = history.times(end_s, intervals);
+    assert!((5_000..=20_000 + intervals + 1).contains(&times.len()), "{} times", times.len());
+    for contact in &solution.sub_impacts {
+        let within = times.iter().filter(|time_s| (contact.start_s..=contact.end_s).contains(time_s));
+        let largest_n = within.map(|time_s| history.at(*time_s).force_n).fold(0.0, f64::max);
+        assert!((largest_n / contact.peak_force_n - 1.0).abs() < 0.05, "{contact:?}: {largest_n}");
+    }
+    // a part of it is given step by step
+    let first = &solution.sub_impacts[0];
+    assert!(history.times(first.end_s, 1).len() > 100);
+}

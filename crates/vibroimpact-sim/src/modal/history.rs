@@ -11,6 +11,9 @@ use crate::panel::legendre::BASIS;
 use crate::panel::oscillator::propagate;
 use contact_models::ContactLaw;
 
+/// Most times of the steps of a history that are worth drawing: several for each point of a picture.
+const MOST_TIMES: usize = 20_000;
+
 /// Motion and force at one time. Displacements are positive away from the structure, towards the side from which the striker comes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -110,16 +113,24 @@ impl<L: ContactLaw> History<L> {
         self.known_until_s
     }
 
-    /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact.
+    /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact. If these are more than
+    /// 20,000 times, as under a strong dashpot, only those of the smallest and the largest force are given of each group of neighbours.
     pub fn times(&self, until_s: f64, count: usize) -> Vec<f64> {
-        let mut times: Vec<f64> = (0..=count.max(1)).map(|i| until_s * i as f64 / count.max(1) as f64).collect();
-        for stretch in &self.recorded.stretches {
-            if !stretch.forces.is_empty() {
-                times.extend(BASIS.nodes.iter().map(|c| stretch.start_s + c * stretch.length_s));
+        let mut steps: Vec<(f64, f64)> = Vec::new();
+        for Stretch { start_s, length_s, forces, .. } in &self.recorded.stretches {
+            steps.push((*start_s, forces.first().map_or(0.0, |acting| acting.force.at(0.0))));
+            if let Some(acting) = forces.first() {
+                let nodes = BASIS.nodes.into_iter().zip(acting.force.at_each(&BASIS.nodes));
+                steps.extend(nodes.map(|(place, force_n)| (start_s + place * length_s, force_n)));
             }
-            times.push(stretch.start_s);
         }
-        times.retain(|t| (0.0..=until_s).contains(t));
+        steps.retain(|(time_s, _)| (0.0..=until_s).contains(time_s));
+        if steps.len() > MOST_TIMES {
+            steps = extremes(&steps);
+        }
+        let mut times: Vec<f64> = (0..=count.max(1)).map(|i| until_s * i as f64 / count.max(1) as f64).collect();
+        times.extend(steps.into_iter().map(|(time_s, _)| time_s));
+        times.retain(|time_s| *time_s <= until_s);
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
@@ -217,6 +228,15 @@ impl Recorded {
             initial_j + work_of_stop - striker_j - modes_j.iter().sum::<f64>() - modal_damping_j - contact_j;
         EnergyLedger { initial_j, striker_j, modes_j, modal_damping_j, contact_j, residual_j }
     }
+}
+
+/// Of these times and forces, by ascending time, the smallest and the largest force of each group of neighbours, in groups of one size
+/// that leave at most [`MOST_TIMES`]. As steps follow the force, short contacts keep their shape.
+fn extremes(steps: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let by_force = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+    let groups = steps.chunks(steps.len().div_ceil(MOST_TIMES / 2));
+    let pairs = groups.flat_map(|group| [group.iter().min_by(by_force), group.iter().max_by(by_force)]);
+    pairs.flatten().copied().collect()
 }
 
 fn energies(modes: &[Mode], amplitude: &[f64], rate: &[f64]) -> Vec<f64> {
