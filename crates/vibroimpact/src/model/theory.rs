@@ -33,7 +33,8 @@ use crate::text::small;
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
 /// Tolerance of the solver as a share of that tolerance.
 const SOLVER_SHARE: f64 = 0.1;
-/// Factor of the expected number of modes, and largest factor of the stated number.
+/// Factor of the expected number of modes, which for some impacts is too small as one solution alone does not show, and largest factor
+/// of the stated number.
 const RICHER: usize = 2;
 /// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;
