@@ -259,7 +259,7 @@ fn s_out_of_range_is_refused_with_value_and_range() {
         ("1e999", "inf"),
     ] {
         let message = refusal(&["infinite-beam", "--s", given, "--json", "--out", "results"], None);
-        let value = message.strip_prefix("error: s = ").and_then(|rest| rest.split(' ').next()).unwrap_or_default();
+        let value = message.strip_prefix("error: --s = ").and_then(|rest| rest.split(' ').next()).unwrap_or_default();
         let same = value == told || value.parse::<f64>().ok() == told.parse().ok();
         assert!(same && message.contains("from 1e-12 to 1e10"), "{given}: {message}");
     }

@@ -133,8 +133,8 @@ fn fit_finds_the_true_parameters() {
 #[test]
 fn bad_parameters_are_refused_by_name() {
     for (option, value, part) in [
-        ("--mu0", "-1", "mu0 = -1.0 is not allowed; it must be a finite number not less than 0"),
-        ("--alpha0", "NaN", "alpha0 = NaN is not allowed"),
+        ("--mu0", "-1", "error: --mu0 = -1.0 is not allowed; it must be a finite number not less than 0"),
+        ("--alpha0", "NaN", "error: --alpha0 = NaN is not allowed"),
         ("--alpha1", "inf", "alpha1 = inf is not allowed"),
         ("--mu0", "one", "one"),
         ("--emoc-modes", "-3", "-3"),

@@ -79,7 +79,8 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
             products.require_room(&[], &[])?;
-            let solution = solve(Structure::Beam, s, &Settings::default())?;
+            let of_s = |fault| super::renamed(fault, &[("s", "--s")]);
+            let solution = solve(Structure::Beam, s, &Settings::default()).map_err(of_s)?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;
             result(&headline, &solution, &Posed { scene: None, scale: None, trust: &[], until: None }, json, &products)

@@ -45,7 +45,15 @@ fn real(text: &str) -> Result<f64, String> {
 
 /// The error for a number of modes that an option gave.
 fn of_option(option: &str) -> impl Fn(InvalidInput) -> InvalidInput {
-    move |fault| if fault.field == "modes" { fault.under(option) } else { fault }
+    move |fault| renamed(fault, &[("modes", option)])
+}
+
+/// An error in a field that an option gave, under the name of the option.
+fn renamed(fault: InvalidInput, options: &[(&str, &str)]) -> InvalidInput {
+    match options.iter().find(|(field, _)| fault.field == *field) {
+        Some((_, option)) => fault.under(*option),
+        None => fault,
+    }
 }
 
 /// A scene in a line.

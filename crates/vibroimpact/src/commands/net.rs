@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use vibroimpact::InvalidInput;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
@@ -10,7 +11,7 @@ use vibroimpact::scene::MOST_MODES;
 use vibroimpact::text;
 
 use super::source::{Changes, SceneSource};
-use super::{of_option, real, whole};
+use super::{of_option, real, renamed, whole};
 
 const EMOC_MODES: &str = "--emoc-modes";
 
@@ -90,9 +91,15 @@ pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     let stated = mu0.is_some() || alpha0.is_some() || alpha1.is_some();
     let [mu0, alpha0, alpha1] = [mu0, alpha0, alpha1].map(|parameter| parameter.unwrap_or(1.0));
     let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
-    let rebound = scene.impact()?.emoc(&parameters, emoc_modes);
+    let rebound = scene.impact()?.emoc(&parameters, emoc_modes).map_err(as_parameter);
     let rebound = if emoc_modes.is_some() { rebound.map_err(of_option(EMOC_MODES))? } else { rebound? };
     if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound, stated)) }
+}
+
+/// An error in a parameter of the law, under the name of its option.
+fn as_parameter(fault: InvalidInput) -> InvalidInput {
+    let options = [("mu0", "--mu0"), ("alpha0", "--alpha0"), ("alpha1", "--alpha1")];
+    renamed(fault, &options)
 }
 
 /// Runs `fit` and returns the text to print.

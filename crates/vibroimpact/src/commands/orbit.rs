@@ -111,9 +111,5 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
 
 /// An error in the range or the first step of a branch, under the name of its option.
 fn as_option(fault: InvalidInput) -> InvalidInput {
-    let options = [("to", "--to"), ("step", "--step")];
-    match options.into_iter().find(|(name, _)| fault.field == *name) {
-        Some((_, option)) => InvalidInput { field: option.into(), ..fault },
-        None => fault,
-    }
+    super::renamed(fault, &[("to", "--to"), ("step", "--step")])
 }

@@ -192,7 +192,7 @@ fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidI
 /// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states.
 pub(super) fn around<T>((tree, fields): (&Value, &[String]), by: &Posing<T>) -> Result<Around<T>, InvalidInput> {
     if !fields.is_empty() {
-        let twice = fields.iter().enumerate().find(|(i, field)| fields[..*i].contains(field));
+        let twice = fields.iter().enumerate().find(|(i, field)| !field.is_empty() && fields[..*i].contains(field));
         if let Some((_, field)) = twice {
             return Err(InvalidInput::new("--by", field.as_str(), "stated only once"));
         }
