@@ -5,7 +5,7 @@ use crate::common::{ball, hertz, pinned, second_method_under, settings};
 use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::modal::{
-    Derivative, Mode, Outcome, Parameter, Posing, Settings, Solution, Solver, Start, Stencil, Striker, Structure,
+    Derivatives, Mode, Outcome, Parameter, Posing, Settings, Solution, Solver, Start, Stencil, Striker, Structure,
 };
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -255,17 +255,13 @@ fn derivatives_agree_with_differences_of_falls() {
         let found = drop.solver().differentiate(striker, law, Some(start), &settings(1e-10), &parameters).unwrap();
         assert!(found.solution.sub_impacts.len() > 1, "{:?}", found.solution);
         for (number, (derivatives, near)) in found.derivatives.iter().zip(&near).enumerate() {
-            let solutions = near
-                .each_ref()
-                .map(|at| at.solver().solve(&at.striker, &at.law, Some(&at.start), &settings(1e-13)).unwrap());
-            let derivatives = derivatives.as_ref().unwrap();
-            let outputs: [(Derivative, fn(&Solution) -> f64); 3] = [
-                (derivatives.restitution, |solution| solution.restitution.unwrap()),
-                (derivatives.end_s, |solution| solution.end_s),
-                (derivatives.striker_velocity_m_s, |solution| solution.striker_velocity_m_s),
-            ];
-            for (derivative, output) in outputs {
-                let slope = Stencil::new(offsets).slope(solutions.each_ref().map(output));
+            let outputs = near.each_ref().map(|at| {
+                let found = at.solver().solve(&at.striker, &at.law, Some(&at.start), &settings(1e-13)).unwrap();
+                [found.restitution.unwrap(), found.end_s, found.striker_velocity_m_s]
+            });
+            let Derivatives { restitution, end_s, striker_velocity_m_s, .. } = derivatives.as_ref().unwrap();
+            for (k, derivative) in [restitution, end_s, striker_velocity_m_s].into_iter().enumerate() {
+                let slope = Stencil::new(offsets).slope(outputs.map(|output| output[k]));
                 let error = (derivative.value - slope).abs();
                 assert!(error < derivative.uncertainty.unwrap() + 1e-6, "{from_rest} {number} {derivative:?} {slope}");
                 assert!(derivative.uncertainty.unwrap() < 1e-4, "{from_rest} {number} {derivative:?}");
