@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::run;
+use crate::program::{run, stdout};
 
 const IMPACT: &str = r#"{ "structure": { "kind": "modes-file", "file": "history.csv" }, "location": "tip",
     "striker": { "mass_kg": 0.1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#;
@@ -100,6 +100,17 @@ fn links_do_not_hide_an_input() {
     ] {
         assert_refused(folder.path(), &["simulate", scene, option, path, "--force"], &[option, path, scene]);
     }
+}
+
+/// A file is completed elsewhere than under a name that another one may have.
+#[test]
+fn no_file_beside_an_output_is_touched() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.svg.part"), INFINITE).unwrap();
+    stdout(&run(folder.path(), &["simulate", "a.svg.part", "--plot", "a.svg"]));
+    let files = contents(folder.path());
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!((names, files[1].1.as_slice()), (vec!["a.svg", "a.svg.part"], INFINITE.as_bytes()));
 }
 
 /// A sweep whose own file has the name of a record in the folder of the results.

@@ -20,6 +20,7 @@ mod comparison;
 mod html;
 mod simulation;
 
+use crate::export::aside::Aside;
 use crate::text::printable;
 pub use crate::text::significant;
 pub use comparison::{Comparison, Expected, Verdict};
@@ -140,21 +141,19 @@ impl Report {
     }
 }
 
-/// Writes a file under a temporary name and then renames it, so that it is never incomplete. Missing folders are created.
+/// Writes a file in a hidden folder beside it and then moves it to its place, so that it is never incomplete and no other file is
+/// touched. Missing folders are created.
 ///
 /// # Errors
 /// A path without a file name, or a folder or file that cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
-    }
-    let mut name = path.file_name().ok_or_else(|| io::Error::other("a file needs a name"))?.to_os_string();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).inspect_err(|_| {
-        // the temporary file is useless; that it could not be removed is less important than the first error
-        let _ = fs::remove_file(&part);
-    })
+    path.file_name().ok_or_else(|| io::Error::other("a file needs a name"))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    let aside = Aside::new_in(folder)?;
+    let whole = aside.path().join("whole");
+    fs::write(&whole, bytes)?;
+    fs::rename(&whole, path)
 }
 
 /// External text as Markdown that shows it literally, in one line.
