@@ -144,8 +144,8 @@ impl<'a> March<'a> {
         };
         self.watch_panel(&mut panel, &mut solved);
         // This panel may have passed over an earlier zero of the same event function, or over another event. An event function is a
-        // polynomial with less than Q zeros on the panel, and so often at most it ends the panel: events that exchange their order from
-        // one solution to the next are as close to each other as the times are known, and the other one follows at once.
+        // polynomial with fewer than Q zeros on the panel, and ends it at most that many times. Beyond that, events exchange their order
+        // from one solution to the next. They are as close to each other as their times are known, and the other one follows at once.
         let mut passed = Vec::new();
         while let Judgement::Meets(other, place) = self.judge_solved(&panel, &solved, Some(crossing)) {
             if other == crossing && place == 0.0 {

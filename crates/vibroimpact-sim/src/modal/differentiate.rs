@@ -266,9 +266,9 @@ impl Solver {
             });
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
             let by = &around.parameters[d];
-            let restitution = match (&impact.fall, &around.falls[d]) {
-                (Some(fall), Some(near)) => change_after_fall(fall, near, Stencil::new(by.offsets), motion, [dx, dv]),
-                _ => restitution_change(self.modes(), impact, by, [motion[1], dv], [&ended, &rate]),
+            let restitution = match &impact.fall {
+                Some(fall) => change_after_fall(fall, &around.falls[d], Stencil::new(by.offsets), motion, [dx, dv]),
+                None => restitution_change(self.modes(), impact, by, [motion[1], dv], [&ended, &rate]),
             };
             Ok(Changes { numbers: [restitution, tangent.time_s, dv], intervals: tangent.intervals, amplitude, rate })
         };
@@ -294,19 +294,19 @@ struct Around<'a> {
     changes: Vec<Change<'a>>,
     /// Change of the weight of the striker's own mode in its motion.
     weight: Vec<f64>,
-    /// The falls of the striker at the neighbours, under gravity.
-    falls: Vec<Option<[Fall; 4]>>,
+    /// The falls of the striker at the four neighbours; none without gravity.
+    falls: Vec<Vec<Fall>>,
 }
 
 impl<'a> Around<'a> {
     fn new(solver: &Solver, lowered: &Lowered, parameters: &'a [Parameter<'a>]) -> Result<Around<'a>, InvalidInput> {
         let mut around = Around { parameters, changes: Vec::new(), weight: Vec::new(), falls: Vec::new() };
         for by in parameters {
-            let fall = |at: &Posing| Fall::new(at.gravity_m_s2, &at.structure.modes, at.striker, at.start);
-            let falls = by.neighbours.iter().map(fall).collect::<Result<Vec<Option<Fall>>, _>>()?;
+            let fall = |at: &Posing| Fall::new(at.gravity_m_s2, &at.structure.modes, at.striker, at.start).transpose();
+            let falls = by.neighbours.iter().filter_map(fall).collect::<Result<Vec<Fall>, _>>()?;
             let near: [Assembly<()>; 4] = array::from_fn(|i| {
                 let Posing { structure, striker, start, .. } = by.neighbours[i];
-                let weight = falls[i].as_ref().map(Fall::weight);
+                let weight = falls.get(i).map(Fall::weight);
                 posed::assembly((&structure.modes, solver.moved()), striker, start, weight)
             });
             let posed: [Posed; 4] = array::from_fn(|i| near[i].with_laws(vec![by.neighbours[i].law]));
@@ -315,8 +315,7 @@ impl<'a> Around<'a> {
             let laws = by.changes_law.then(|| vec![by.neighbours.each_ref().map(|at| at.law)]);
             around.changes.push(Change::new(&lowered.system, posed.each_ref(), laws, stencil));
             around.weight.push(stencil.slope(by.neighbours.each_ref().map(weight)));
-            let falls: Option<Vec<Fall>> = falls.into_iter().collect();
-            around.falls.push(falls.and_then(|falls| falls.try_into().ok()));
+            around.falls.push(falls);
         }
         Ok(around)
     }
@@ -325,12 +324,12 @@ impl<'a> Around<'a> {
 /// Change of the restitution after a fall, whose striker has this displacement and velocity at the end, and these changes of both.
 fn change_after_fall(
     fall: &Fall,
-    near: &[Fall; 4],
+    near: &[Fall],
     stencil: Stencil<4>,
     [displacement_m, velocity_m_s]: [f64; 2],
     changes: [f64; 2],
 ) -> f64 {
-    let of_same_motion = stencil.slope(near.each_ref().map(|fall| fall.restitution(displacement_m, velocity_m_s)));
+    let of_same_motion = stencil.slope(array::from_fn(|i| near[i].restitution(displacement_m, velocity_m_s)));
     let by = fall.restitution_by(displacement_m, velocity_m_s);
     of_same_motion + by[0] * changes[0] + by[1] * changes[1]
 }

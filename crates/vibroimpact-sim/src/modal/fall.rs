@@ -113,8 +113,9 @@ impl Fall {
 
     /// Its derivatives with respect to displacement (1/m) and velocity (s/m).
     pub fn restitution_by(&self, displacement_m: f64, velocity_m_s: f64) -> [f64; 2] {
-        let twice = self.arrives_m_s().powi(2) * self.restitution(displacement_m, velocity_m_s);
-        [self.gravity_m_s2 / twice, velocity_m_s / twice]
+        // e de = (g du + v dv)/v_arrival^2
+        let scale = self.arrives_m_s().powi(2) * self.restitution(displacement_m, velocity_m_s);
+        [self.gravity_m_s2 / scale, velocity_m_s / scale]
     }
 
     /// The height above the undeflected structure at this displacement, as a share of that of the fall.

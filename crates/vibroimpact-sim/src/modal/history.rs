@@ -113,8 +113,9 @@ impl<L: ContactLaw> History<L> {
         self.known_until_s
     }
 
-    /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact. If these are more than
-    /// 20,000 times, as under a strong dashpot, only those of the smallest and the largest force are given of each group of neighbours.
+    /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact. If the steps have more
+    /// than 20,000 times in all, as under a strong dashpot, they are divided into groups of neighbours, of each of which only the times of
+    /// the smallest and of the largest force are given.
     pub fn times(&self, until_s: f64, count: usize) -> Vec<f64> {
         let mut steps: Vec<(f64, f64)> = Vec::new();
         for Stretch { start_s, length_s, forces, .. } in &self.recorded.stretches {

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use vibroimpact::InvalidInput;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
@@ -14,6 +13,8 @@ use super::source::{Changes, SceneSource};
 use super::{of_option, real, renamed, whole};
 
 const EMOC_MODES: &str = "--emoc-modes";
+/// The parameters of the law, and their options.
+const PARAMETERS: [(&str, &str); 3] = [("mu0", "--mu0"), ("alpha0", "--alpha0"), ("alpha1", "--alpha1")];
 
 pub const EMOC_EXAMPLES: &str = "Examples:
   vibroimpact emoc ball.json                               with all parameters 1, if nothing has been fitted
@@ -91,15 +92,10 @@ pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     let stated = mu0.is_some() || alpha0.is_some() || alpha1.is_some();
     let [mu0, alpha0, alpha1] = [mu0, alpha0, alpha1].map(|parameter| parameter.unwrap_or(1.0));
     let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
-    let rebound = scene.impact()?.emoc(&parameters, emoc_modes).map_err(as_parameter);
+    let rebound = scene.impact()?.emoc(&parameters, emoc_modes);
+    let rebound = rebound.map_err(|fault| renamed(fault, &PARAMETERS));
     let rebound = if emoc_modes.is_some() { rebound.map_err(of_option(EMOC_MODES))? } else { rebound? };
     if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound, stated)) }
-}
-
-/// An error in a parameter of the law, under the name of its option.
-fn as_parameter(fault: InvalidInput) -> InvalidInput {
-    let options = [("mu0", "--mu0"), ("alpha0", "--alpha0"), ("alpha1", "--alpha1")];
-    renamed(fault, &options)
 }
 
 /// Runs `fit` and returns the text to print.

@@ -1,8 +1,8 @@
 //! Uncertainty of the theory of bending, and choice of the theory for an impact.
 //!
 //! If a beam can be solved by Euler-Bernoulli's and by Timoshenko's theory, the impact is solved by both, and by Timoshenko's with
-//! a shear coefficient 2 % smaller and larger: the usual coefficients lie within 5 %. With the four restitutions `e_v`, one of
-//! which is `e` by the theory of the answer,
+//! a shear coefficient 2 % smaller and larger. (The usual coefficients differ by up to 5 %.) With the four restitutions `e_v`, one
+//! of which is `e` by the theory of the answer,
 //!
 //! ```text
 //! u = max_v |e_v - e|.
@@ -33,8 +33,8 @@ use crate::text::small;
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
 /// Tolerance of the solver as a share of that tolerance.
 const SOLVER_SHARE: f64 = 0.1;
-/// Factor of the expected number of modes, which for some impacts is too small as one solution alone does not show, and largest factor
-/// of the stated number.
+/// Factor of the expected number of modes, and largest factor of the stated number. For some impacts the expected number itself is too
+/// small, which one solution by each theory does not show.
 const RICHER: usize = 2;
 /// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;

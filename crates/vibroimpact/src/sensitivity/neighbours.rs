@@ -192,11 +192,14 @@ fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidI
 /// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states.
 pub(super) fn around<T>((tree, fields): (&Value, &[String]), by: &Posing<T>) -> Result<Around<T>, InvalidInput> {
     if !fields.is_empty() {
-        let twice = fields.iter().enumerate().find(|(i, field)| !field.is_empty() && fields[..*i].contains(field));
-        if let Some((_, field)) = twice {
-            return Err(InvalidInput::new("--by", field.as_str(), "stated only once"));
+        let mut near: Vec<Neighbours<T>> = Vec::with_capacity(fields.len());
+        for field in fields {
+            let found = Neighbours::of(tree, field, by)?;
+            if near.iter().any(|known| known.field == found.field) {
+                return Err(InvalidInput::new("--by", field.as_str(), "stated only once"));
+            }
+            near.push(found);
         }
-        let near = fields.iter().map(|field| Neighbours::of(tree, field, by)).collect::<Result<_, _>>()?;
         return Ok(Around { near, left_out: Vec::new(), named: true });
     }
     let (numbers, mut left_out) = all_numbers(tree);
