@@ -1,8 +1,7 @@
 //! Gauss quadrature (W. Gautschi, Orthogonal Polynomials, 2004): of a discrete measure by the Lanczos process (2.2.3), of
 //! a power law by Jacobi's recurrence (1.5).
 
-use crate::dense::eigen;
-use faer::Mat;
+use crate::dense::eigen_tridiagonal;
 
 /// A point mass of a measure on the positive axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,14 +70,8 @@ pub(crate) fn power_law_atoms(growth: f64, total: f64, count: usize) -> Vec<Atom
 
 /// Nodes, and weights that sum to 1, from the three-term recurrence of the orthonormal polynomials.
 fn of_recurrence(diagonal: &[f64], off_diagonal: &[f64]) -> Vec<(f64, f64)> {
-    let n = diagonal.len();
-    let jacobi = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
-        0 => diagonal[i],
-        1 => off_diagonal[i.min(j)],
-        _ => 0.0,
-    });
-    match eigen(jacobi.as_ref()) {
-        Some((values, vectors)) => (0..n).map(|r| (values[r], vectors[(0, r)].powi(2))).collect(),
+    match eigen_tridiagonal(diagonal, off_diagonal) {
+        Some((values, vectors)) => (0..values.len()).map(|r| (values[r], vectors[(0, r)].powi(2))).collect(),
         None => vec![(diagonal[0], 1.0)],
     }
 }
