@@ -16,7 +16,9 @@
 //! At a period doubling a branch of twice the period begins, in the direction of the multiplier's eigenvector
 //! ([`follow_doubled`]). It may end there or at another period doubling of the same branch.
 
-use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, refine};
+use super::orbit::{Orbit, OrbitOutcome, refine};
+use super::orbit_settings::OrbitSettings;
+use super::period_map::PeriodMap;
 use super::problem::Assembly;
 use super::search::find_orbit_until;
 use contact_models::ContactLaw;

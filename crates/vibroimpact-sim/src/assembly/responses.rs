@@ -1,8 +1,9 @@
 //! Responses of the contacts to each other's forces on panels, for the runs of one system. They are the sum of the responses of
 //! the elastic modes, which the tables cache, and of those of the rigid modes, which differ from striker to striker.
 
+use super::forced::{Response, with_rigid_modes};
 use super::system::System;
-use super::tables::{Response, Tables, with_rigid_modes};
+use super::tables::Tables;
 use crate::panel::dyadic::Levels;
 use crate::panel::forcing::Order;
 use crate::panel::legendre::Matrix;

@@ -5,7 +5,9 @@
 //! are compared with those `n` periods later, and Newton's method begins at the nearest returns. The first stable motion that it finds
 //! is the result, or else the first motion: which returns are nearest depends on rounding if the motion is chaotic.
 
-use super::orbit::{OrbitOutcome, OrbitSettings, PeriodMap, Reached, Recurrence, refine};
+use super::orbit::{OrbitOutcome, Recurrence, refine};
+use super::orbit_settings::OrbitSettings;
+use super::period_map::{PeriodMap, Reached};
 use super::problem::Assembly;
 use super::solution::{Motion, Observer, Outcome, Reason};
 use contact_models::ContactLaw;

@@ -2,8 +2,8 @@
 
 use crate::assembly::change::Change;
 use crate::assembly::collocate::Mobility;
+use crate::assembly::forced::{Forced, Over, rates_at_nodes, with_rigid_modes};
 use crate::assembly::system::{Span, System};
-use crate::assembly::tables::{Forced, Over, rates_at_nodes, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
 use crate::panel::dyadic::{Rotation, Steps};
 use crate::panel::forcing::Order;
