@@ -1,8 +1,9 @@
 //! The result of trying a model.
 
-use vibroimpact_sim::modal::SubImpact;
+use vibroimpact_sim::modal::{Solution, SubImpact};
 
-use super::{Answer, Uncertainty};
+use super::uncertainty::Known;
+use super::{Answer, Model, Uncertainty};
 use crate::impact::Impact;
 use crate::scene::InvalidInput;
 
@@ -28,3 +29,33 @@ impl From<Answer> for Choice {
 
 /// The result of trying a model: an answer, or the reason why it does not apply.
 pub(super) type Tried = Result<Result<Choice, String>, InvalidInput>;
+
+/// The uncertainty of an answer, and the choice of its modes.
+pub(super) struct Conclusion {
+    pub known: Known,
+    /// Of the largest force of each contact.
+    pub peaks: Vec<Uncertainty>,
+    pub settled: bool,
+    pub spread: Option<f64>,
+    pub reason: String,
+}
+
+impl Choice {
+    /// That of an impact in modes.
+    pub(super) fn modal(tolerance: f64, impact: Impact, solution: Solution, conclusion: Conclusion) -> Choice {
+        let Conclusion { known, peaks, settled, spread, reason } = conclusion;
+        let answer = Answer {
+            outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
+            restitution: solution.restitution,
+            sub_impact_count: Some(solution.sub_impacts.len()),
+            modes: impact.kept_modes(),
+            remainder_modes: impact.remainder_modes,
+            residual_compliance_m_n: impact.residual_compliance_m_n(),
+            settled,
+            spread,
+            ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)
+        };
+        Choice { answer, impact: Some(impact), sub_impacts: solution.sub_impacts, peak_forces: peaks }
+    }
+}

@@ -26,6 +26,8 @@ mod plan;
 mod pose;
 mod quantity;
 mod rigid;
+mod rung;
+mod rungs;
 mod settle;
 mod stated;
 mod static_tail;

@@ -25,295 +25,30 @@
 //! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
-use vibroimpact_sim::modal::{Outcome, Recording, Settings, Solution};
-use vibroimpact_sim::{StopReason, both};
+use vibroimpact_sim::modal::Outcome;
 
-use super::choice::Choice;
-use super::guess::{fewer, guess, more, resolution_of};
-use super::left_out::{
-    at_the_end, by_changes, energy_of_remainder, jumps, still_growing, too_short, with_one_remainder_mode,
-    with_softer_remainder,
-};
-use super::other_modes::solve;
+use super::Cost;
+use super::choice::{Choice, Conclusion};
+use super::guess::{fewer, guess, more};
+use super::left_out::{jumps, still_growing};
 use super::pose::{Pose, Source};
-use super::quantity::{Change, Quantity};
+use super::quantity::Quantity;
+use super::rung::{Rung, settings};
+use super::rungs::Rungs;
 use super::uncertainty::{Known, Uncertainty, of_peaks};
-use super::{Answer, Cost, Model};
-use crate::impact::Impact;
 use crate::scene;
 use crate::text::small;
 
 /// The largest number of modes counts if it is this many times the one before; the change by a smaller step contains little
 /// information about the rest.
 const LEAST_RAISE: f64 = 1.25;
-/// Only changes from at least this share of the number of modes are used to estimate the effect of further ones.
-const NEAR: f64 = 0.5;
-/// Tolerance of the solver with the first numbers of modes, as a share of the requested tolerance, and its range. Below it,
-/// differences are dominated by rounding.
-const SOLVER_SHARE: f64 = 0.1;
-const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
-/// Tolerance with the next number of modes, if there are several contacts, as a share of that with the number before.
-const TIGHTER: f64 = 1.0 / 30.0;
-/// The solver's part: this share of its tolerance, and of the change between runs whose tolerances differ by a factor of thirty.
-const SOLVER_FLOOR: f64 = 0.5;
-const SOLVER_CHANGE: f64 = 0.1;
-/// Factor of the tolerance of another solution that shows the solver's error, if the last two numbers of modes share the tightest
-/// tolerance.
-const LOOSER: f64 = 16.0;
-/// Beyond this many modes the number is raised after several contacts only while changes decrease: the last must be smaller than
-/// this share of the one two steps before. A single contact amplifies nothing, so that more modes help.
+/// Beyond this many modes the number is raised after several contacts only while changes decrease. A single contact amplifies nothing,
+/// so that more modes help.
 const PATIENCE: usize = 400;
-const FALLING: f64 = 0.5;
 /// Two impacts may agree by accident, and small changes may add up. The stated uncertainty from the truncated modes is
 /// therefore this factor times the estimate by which the restitution has converged, as far as the tolerance allows. Random
 /// scenes show that converged results are within their tolerance (`cargo xtask study-auto`).
 pub(super) const LUCK: f64 = 4.0;
-/// Number of the last results that make up the spread if they do not converge.
-const SPREAD: usize = 4;
-
-/// The solver's settings for a requested tolerance, after this many tightenings.
-fn settings(tolerance: f64, tightened: usize) -> Settings {
-    let share = (0..tightened).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
-    let tolerance = share.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1);
-    Settings { tolerance, estimate_uncertainty: false, ..Settings::default() }
-}
-
-/// One number of modes and its result.
-struct Rung {
-    /// Number of modes from the lowest, including those that are not excited.
-    count: usize,
-    impact: Impact,
-    solution: Solution,
-    /// Its motion, if motions are kept and no later number was tried.
-    recording: Option<Recording>,
-    /// Frequency of the last mode relative to the contact, `R(N)` (`guess.rs`).
-    resolution: f64,
-    /// Possible error of the remainder modes, from their energy.
-    energy: f64,
-    /// Errors that other numbers of modes do not show; computed once everything else has converged.
-    unseen: Option<Unseen>,
-}
-
-/// Impacts with the same number of modes that show errors which changes between numbers of modes do not show.
-#[derive(Default)]
-struct Unseen {
-    /// With a looser tolerance, if the number of modes before had the same tolerance.
-    solver: Option<Solution>,
-    /// With another shape of the remainder modes, if theirs is assumed.
-    shape: Option<Solution>,
-    /// With a static compliance larger by its uncertainty.
-    compliance: Option<Solution>,
-}
-
-/// An impact with a number of modes, to be solved.
-struct Posed {
-    count: usize,
-    impact: Impact,
-    resolution: f64,
-}
-
-impl Posed {
-    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Posed, InvalidInput> {
-        let (structure, remainder_modes) = pose.structure(count, cost)?;
-        let remainder = &structure.modes[structure.modes.len() - remainder_modes..];
-        let resolution = resolution_of(pose, count, remainder, cost)?;
-        Ok(Posed { count, impact: pose.impact(structure, remainder_modes, settings), resolution })
-    }
-
-    fn solved(self, solution: Solution, recording: Option<Recording>) -> Rung {
-        let Posed { count, impact, resolution } = self;
-        let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
-        Rung { count, impact, solution, recording, resolution, energy, unseen: None }
-    }
-}
-
-impl Rung {
-    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
-        let posed = Posed::new(pose, count, settings, cost)?;
-        let (solution, recording) = solve(&posed.impact, pose.kept, cost)?;
-        Ok(posed.solved(solution, recording))
-    }
-
-    /// One with this number of modes and, if impacts are solved at the same time, the one with fewer modes that it will most likely
-    /// be compared with. Where that one fails, it has not been solved.
-    fn with_the_one_before(
-        pose: &mut Pose,
-        count: usize,
-        settings: Settings,
-        cost: &mut Cost,
-    ) -> Result<(Rung, Option<Rung>), InvalidInput> {
-        if !pose.kept.is_alone() || pose.is_complete() {
-            return Ok((Rung::new(pose, count, settings, cost)?, None));
-        }
-        let posed = Posed::new(pose, count, settings, cost)?;
-        let before = Posed::new(pose, fewer(count), settings, cost).ok();
-        let solve_before = || before.as_ref()?.impact.solve().ok();
-        let (of_before, solved) = both(before.is_some(), solve_before, || solve(&posed.impact, pose.kept, cost));
-        let (solution, recording) = solved?;
-        let before = before.zip(of_before).map(|(before, solution)| before.solved(solution, None));
-        Ok((posed.solved(solution, recording), before))
-    }
-
-    /// Solves the impact with other remainder modes and, if it is wanted, with a looser tolerance.
-    fn find_unseen(&mut self, pose: &mut Pose, with_solver: bool, cost: &mut Cost) -> Result<(), InvalidInput> {
-        let listed = matches!(pose.source, Source::Listed { .. });
-        let wanted = pose.scene.residual_compliance != Some(false);
-        let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
-        let mut changed = |other: Impact| Ok::<_, InvalidInput>(Some(solve(&other, pose.kept, cost)?.0));
-        let mut unseen = Unseen::default();
-        let Impact { structure, remainder_modes, settings, .. } = &self.impact;
-        if with_solver {
-            let settings = Settings { tolerance: LOOSER * settings.tolerance, ..*settings };
-            unseen.solver = changed(Impact { settings, ..self.impact.clone() })?;
-        }
-        if listed && *remainder_modes > 1 {
-            // for a list the shape of the tail is an assumption, whose effect another shape shows
-            unseen.shape = changed(self.impact.on(with_one_remainder_mode(structure, *remainder_modes)))?;
-        }
-        if uncertain_m_n > 0.0 {
-            unseen.compliance =
-                changed(self.impact.on(with_softer_remainder(structure, *remainder_modes, uncertain_m_n)))?;
-        }
-        self.unseen = Some(unseen);
-        Ok(())
-    }
-
-    fn has_several_contacts(&self) -> bool {
-        self.solution.sub_impacts.len() > 1
-    }
-
-    /// Whether it reached the limit of steps, which the impact with fewer modes may not reach.
-    fn takes_too_many_steps(&self) -> bool {
-        matches!(self.solution.outcome, Outcome::Stopped(StopReason::Steps))
-    }
-}
-
-/// The numbers of modes tried so far.
-struct Rungs {
-    earlier: Vec<Rung>,
-    last: Rung,
-    restitution: Quantity<'static>,
-    /// Whether the contact force jumps at first touch.
-    jumps: bool,
-    /// The number of modes, if there is one, that makes up the whole static compliance.
-    complete: Option<usize>,
-    /// The number of modes with which the impact reached a limit of steps.
-    too_many: Option<usize>,
-}
-
-impl Rungs {
-    fn push(&mut self, next: Rung) {
-        let last = std::mem::replace(&mut self.last, next);
-        self.add_earlier(last);
-    }
-
-    /// Adds one before the last.
-    fn add_earlier(&mut self, rung: Rung) {
-        self.earlier.push(Rung { recording: None, ..rung });
-    }
-
-    /// All, the latest first.
-    fn all(&self) -> impl Iterator<Item = &Rung> {
-        std::iter::once(&self.last).chain(self.earlier.iter().rev())
-    }
-
-    /// The latest ones, latest first, with similar numbers of modes. Of the impacts with one number only the latest counts, which
-    /// has the tightest tolerance: the same modes again contain no further information about the truncated ones. If there are
-    /// none, every impact counts.
-    fn near(&self) -> impl Iterator<Item = &Rung> {
-        let again = |i: usize, count| self.all().take(i).any(|later| later.count == count);
-        let distinct = self.all().enumerate().filter(move |(i, rung)| self.is_complete() || !again(*i, rung.count));
-        let mut last = self.last.count;
-        distinct.map(|(_, rung)| rung).take_while(move |rung| {
-            let before = std::mem::replace(&mut last, rung.count);
-            (1 + rung.count.min(before)) as f64 >= NEAR * (1 + rung.count.max(before)) as f64
-        })
-    }
-
-    fn is_complete(&self) -> bool {
-        self.complete == Some(self.last.count)
-    }
-
-    /// Changes between neighbours with different numbers of modes, the latest first.
-    fn changes(&self, of: &Quantity) -> impl Iterator<Item = (Change, [usize; 2])> {
-        let pairs = self.near().zip(self.near().skip(1)).filter(|(next, last)| next.count != last.count);
-        pairs.map(|(next, last)| (of.change(&last.solution, &next.solution), [last.count, next.count]))
-    }
-
-    /// Their sizes.
-    fn sizes(&self, of: &Quantity) -> Vec<f64> {
-        self.changes(of).map(|(change, _)| change.size()).collect()
-    }
-
-    /// Change of the last by one of the impacts with the same number of modes; 0 if that is not needed.
-    fn unseen(&self, of: &Quantity, which: fn(&Unseen) -> &Option<Solution>) -> f64 {
-        let other = self.last.unseen.as_ref().and_then(|unseen| which(unseen).as_ref());
-        other.map_or(0.0, |other| of.change(other, &self.last.solution).size())
-    }
-
-    /// Whether changes decrease as the number of modes rises, if there are enough of them.
-    fn falls(&self) -> bool {
-        let sizes = self.sizes(&self.restitution);
-        sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
-    }
-
-    /// Estimated change by the truncated modes, if it is known.
-    fn left_out(&self, of: &Quantity) -> f64 {
-        let changes: Vec<(f64, usize)> = self.changes(of).map(|(change, [_, to])| (change.size(), to)).collect();
-        if self.is_complete() {
-            return 0.0;
-        }
-        let changed = by_changes(&changes, self.jumps, of.scale()).max(of.scale() * self.last.energy);
-        self.with_unseen(of, changed)
-    }
-
-    /// The same where the numbers of modes end before the restitution has converged.
-    fn left_out_at_the_end(&self, of: &Quantity) -> f64 {
-        let changed = at_the_end(&self.sizes(of), of.scale(), self.last.energy, self.last.resolution);
-        self.with_unseen(of, changed)
-    }
-
-    /// An estimate with what remainder modes of another shape and the uncertainty of the compliance change.
-    fn with_unseen(&self, of: &Quantity, changed: f64) -> f64 {
-        changed.max(self.unseen(of, |unseen| &unseen.shape)) + self.unseen(of, |unseen| &unseen.compliance)
-    }
-
-    /// Whether the last two had the tightest tolerance, so that their change may not show the solver's error.
-    fn share_tightest_tolerance(&self) -> bool {
-        self.all().take(2).all(|rung| rung.impact.settings.tolerance <= SOLVER_RANGE.0)
-    }
-
-    /// Possible error of the solver with the last number of modes.
-    fn solver(&self, of: &Quantity) -> f64 {
-        let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
-        let change = match wider {
-            Some(wider) => of.change(&wider.solution, &self.last.solution).size(),
-            None if self.near().count() > 2 => self.sizes(of).first().copied().unwrap_or(of.scale()),
-            None => 0.0,
-        };
-        let floor = SOLVER_FLOOR * self.last.impact.settings.tolerance * of.scale();
-        floor + (SOLVER_CHANGE * change).max(self.unseen(of, |unseen| &unseen.solver))
-    }
-
-    /// Possible error of the restitution.
-    fn error(&self) -> f64 {
-        self.solver(&self.restitution) + self.left_out(&self.restitution)
-    }
-
-    fn counts(&self) -> String {
-        let mut counts: Vec<usize> = self.all().map(|rung| rung.count).collect();
-        counts.sort_unstable();
-        counts.dedup();
-        counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
-    }
-
-    /// Difference of the largest and smallest of the last values of a quantity, and their number.
-    fn spread(&self, of: &Quantity) -> Option<(f64, usize)> {
-        let values: Vec<f64> = self.near().take(SPREAD).filter_map(|rung| of.value(&rung.solution)).collect();
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
-        (values.len() > 1).then_some((high - low, values.len()))
-    }
-}
 
 /// Raises the number of modes until the restitution has converged, or there are no more.
 pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
@@ -369,7 +104,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         if settled || limit {
             return finish(pose, rungs, settled, cost);
         }
-        let tighter = rungs.last.impact.settings.tolerance > SOLVER_RANGE.0;
+        let tighter = !rungs.last.has_tightest_tolerance();
         let next = if count >= PATIENCE && several_contacts && !rungs.falls() {
             return finish(pose, rungs, false, cost);
         } else if !ends {
@@ -466,34 +201,5 @@ fn lightly_damped(pose: &Pose) -> &'static str {
         0.0 => " (nothing damps the structure)",
         damping if damping < 0.01 => " (the structure is lightly damped)",
         _ => "",
-    }
-}
-
-/// The uncertainty of an answer, and the choice of its modes.
-pub(super) struct Conclusion {
-    pub known: Known,
-    /// Of the largest force of each contact.
-    pub peaks: Vec<Uncertainty>,
-    pub settled: bool,
-    pub spread: Option<f64>,
-    pub reason: String,
-}
-
-impl Choice {
-    pub(super) fn modal(tolerance: f64, impact: Impact, solution: Solution, conclusion: Conclusion) -> Choice {
-        let Conclusion { known, peaks, settled, spread, reason } = conclusion;
-        let answer = Answer {
-            outcome: solution.outcome.as_str(),
-            stopped_by: solution.outcome.stopped_by(),
-            restitution: solution.restitution,
-            sub_impact_count: Some(solution.sub_impacts.len()),
-            modes: impact.kept_modes(),
-            remainder_modes: impact.remainder_modes,
-            residual_compliance_m_n: impact.residual_compliance_m_n(),
-            settled,
-            spread,
-            ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)
-        };
-        Choice { answer, impact: Some(impact), sub_impacts: solution.sub_impacts, peak_forces: peaks }
     }
 }

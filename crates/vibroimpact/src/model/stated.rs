@@ -37,12 +37,12 @@
 use vibroimpact_sim::modal::{Settings, Solution};
 use vibroimpact_sim::{StopReason, both};
 
-use super::choice::Choice;
+use super::choice::{Choice, Conclusion};
 use super::guess::fewer;
 use super::left_out::{by_changes, energy_of_remainder, jumps, with_softer_remainder};
 use super::other_modes::{moves_before, needed, solve, with_modes};
 use super::quantity::Quantity;
-use super::settle::{Conclusion, LUCK};
+use super::settle::LUCK;
 use super::static_tail::StaticTail;
 use super::uncertainty::{Known, Uncertainty, of_peaks};
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
