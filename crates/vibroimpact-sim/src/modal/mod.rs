@@ -40,6 +40,7 @@ mod posed;
 pub(crate) mod problem;
 mod pulse;
 mod recording;
+mod restitutions;
 mod solution;
 mod solve;
 

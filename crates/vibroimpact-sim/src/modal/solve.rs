@@ -5,6 +5,7 @@ use super::history::{History, all_modes};
 use super::posed;
 use super::problem::{Mode, SPEED_MIN, Settings, Start, Striker, Structure, approach, mobility, moved, rigid_motion};
 use super::recording::{Recording, work_and_damping_j};
+use super::restitutions::{Restitutions, judge_peaks, uncertainty};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use crate::StopReason;
 use crate::assembly::load::Loads;
@@ -33,14 +34,8 @@ pub(crate) const BESIDE: usize = 1;
 /// Factor of the tolerance of a further solution in the steps of the answer, where these differ by more than the tolerance or in the
 /// number of their contacts.
 const FURTHER: f64 = 8.0;
-/// Factor from the largest difference to the uncertainty; the difference from the further solution counts twice.
-const WIDENED: f64 = 3.0;
+/// Factor of the difference from the further solution.
 const TWICE: f64 = 2.0;
-/// Share of the largest force of an impact above which differences of forces say nothing of their errors.
-const ACCIDENTS: f64 = 0.05;
-/// Share of the tolerance that each contact adds, as its error may vanish in all differences by accident.
-const LEAST: f64 = 2.5e-3;
-
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less. Threads may share one solver: each finds, to the last bit, what it would find alone.
 ///
@@ -116,21 +111,6 @@ pub(crate) struct Solved {
     fall: Option<Fall>,
     /// Work of the contact and loss by damping in the run, if computed while coarser problems were solved in another thread (J).
     work_and_damping_j: Option<[f64; 2]>,
-}
-
-/// The restitution of an impact, and those that it would have if it ended after each of its contacts.
-pub(crate) struct Restitutions {
-    flights: Vec<Flight>,
-    last: f64,
-    /// For a striker that falls and stays: that of its highest flight.
-    would_be: Option<f64>,
-}
-
-/// The motion after a contact.
-struct Flight {
-    /// When the contact began and ended (s).
-    contact_s: [f64; 2],
-    restitution: f64,
 }
 
 /// Collects the intervals of contact.
@@ -393,7 +373,7 @@ impl Solver {
             *counts += run.counts;
             let Some(coarser) = coarser else { return without(run) };
             spread = spread.max(known.difference(coarser));
-            same_contacts &= known.flights.len() == coarser.flights.len();
+            same_contacts &= known.contacts() == coarser.contacts();
         }
         let mut others: Vec<(&[SubImpact], f64)> = coarser.iter().map(|(run, _)| (&run.sub_impacts[..], 1.0)).collect();
         let run;
@@ -405,8 +385,7 @@ impl Solver {
             others.push((&run.sub_impacts, TWICE));
         }
         judge_peaks(sub_impacts, &others, tolerance);
-        let contacts = known.flights.len() as f64;
-        Some((WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX))
+        Some(uncertainty(spread, known.contacts(), tolerance))
     }
 
     /// The tables of a solution for a system of the structure, with or without a striker.
@@ -533,61 +512,10 @@ impl Solver {
     fn restitutions(&self, run: &Run, impact: &Impact) -> Option<Restitutions> {
         let last = self.restitution(run, impact)?;
         let (mobility, approach) = (mobility(&self.modes, impact.striker), self.approach_m_s(impact));
-        let mut impulse_n_s = 0.0;
-        let after = |contact: &SubImpact| {
-            impulse_n_s += contact.impulse_n_s;
-            Flight { contact_s: [contact.start_s, contact.end_s], restitution: mobility * impulse_n_s / approach - 1.0 }
-        };
+        let by = |impulse_n_s: f64| mobility * impulse_n_s / approach - 1.0;
         let of_stay = impact.fall.filter(|_| run.outcome == Outcome::Sustained);
         let would_be = of_stay.map(|fall| fall.restitution(run.record.highest_m, 0.0));
-        Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last, would_be })
-    }
-}
-
-impl Restitutions {
-    /// The largest difference from another solution of the same impact, of the last restitutions and of those in the middle of
-    /// each flight. The times are compared and not the numbers of the contacts, since a graze may be missing from one of them.
-    fn difference(&self, other: &Restitutions) -> f64 {
-        if let (Some(one), Some(other)) = (self.would_be, other.would_be) {
-            // no flight counts, and how high they are tells how far they are from it
-            return (one - other).abs();
-        }
-        let of = |pair: &[Flight]| {
-            let [from_s, to_s] = [pair[0].contact_s[1], pair[1].contact_s[0]];
-            Some((pair[0].restitution - other.at(0.5 * (from_s + to_s))?).abs())
-        };
-        self.flights.windows(2).filter_map(of).fold((self.last - other.last).abs(), f64::max)
-    }
-
-    /// The restitution if the impact ended at this time; `None` during a contact.
-    fn at(&self, time_s: f64) -> Option<f64> {
-        let begun = self.flights.partition_point(|flight| flight.contact_s[0] < time_s);
-        match begun.checked_sub(1).map(|i| &self.flights[i]) {
-            Some(flight) => (flight.contact_s[1] <= time_s).then_some(flight.restitution),
-            None => Some(-1.0),
-        }
-    }
-}
-
-/// Estimates the errors of the largest forces from other solutions of the same impact, whose differences count by this factor. As the
-/// error of a motion persists, and two motions may agree in one number by accident, a difference counts for all later contacts as well.
-/// Once it is a large part of all forces, the motions have nothing but accidents in common.
-fn judge_peaks(sub_impacts: &mut [SubImpact], others: &[(&[SubImpact], f64)], tolerance: f64) {
-    let largest_n = sub_impacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
-    let mut spread_n = 0.0f64;
-    for i in 0..sub_impacts.len() {
-        let difference_n = |(other, factor): &(&[SubImpact], f64)| {
-            let other = SubImpact::counterpart(i, sub_impacts, other)?;
-            Some(factor * (sub_impacts[i].peak_force_n - other.peak_force_n).abs())
-        };
-        let differences_n: Option<Vec<f64>> = others.iter().map(difference_n).collect();
-        let Some(differences_n) = differences_n else { continue };
-        spread_n = differences_n.into_iter().fold(spread_n, f64::max);
-        if spread_n > ACCIDENTS * largest_n {
-            return;
-        }
-        let uncertainty_n = WIDENED * spread_n + LEAST * (i + 1) as f64 * tolerance * largest_n;
-        sub_impacts[i].peak_force_uncertainty_n = Some(uncertainty_n.min(f64::MAX));
+        Some(Restitutions::new(&run.sub_impacts, by, last, would_be))
     }
 }
 
