@@ -260,19 +260,38 @@ fn loads_with_a_common_period_have_an_orbit() {
     assert!((orbit.section_m[0][0][1] - orbit.state[0]).abs() < 1e-12, "{orbit:?}");
 }
 
+/// A hardening frequency response: a lightly damped oscillator that reaches a stiff stop near its resonance.
+fn hardening(omega: f64) -> Result<Assembly<Law>, InvalidInput> {
+    let mut assembly = driven(0.02, 0.05, 0.6, omega);
+    assembly.contacts[0].law = Law::from(LinearSpring::new(2000.0).unwrap());
+    Ok(assembly)
+}
+
+/// At a fold a multiplier passes +1, wherever the orbits on either side lie.
+#[test]
+fn a_fold_is_located_in_the_step_in_which_the_parameter_turns() {
+    let fold = |step: f64| {
+        let settings = BranchSettings { step, longest_step: 0.02, max_orbits: 200, ..BranchSettings::over(9.0, 20.0) };
+        let branch = follow_branch(hardening, &settings, &|| false).unwrap();
+        branch.special.into_iter().find(|point| point.kind == Special::Fold).unwrap()
+    };
+    let one = fold(0.0107);
+    for step in [0.01, 0.0136] {
+        let fold = fold(step);
+        let nearest = fold.orbit.floquet_multipliers.iter().map(|m| (m[0] - 1.0).hypot(m[1])).fold(1.0, f64::min);
+        assert!(nearest < 1e-5, "{step}: {fold:?}");
+        assert!((fold.parameter - one.parameter).abs() <= fold.uncertainty + one.uncertainty, "{fold:?} {one:?}");
+        assert!(fold.uncertainty < 1e-10, "{fold:?}");
+    }
+}
+
 #[test]
 fn a_branch_passes_its_folds_and_locates_its_first_contact() {
-    // A hardening frequency response: a lightly damped oscillator that reaches a stiff stop near its resonance.
-    let build = |omega: f64| {
-        let mut assembly = driven(0.02, 0.05, 0.6, omega);
-        assembly.contacts[0].law = Law::from(LinearSpring::new(2000.0).unwrap());
-        Ok::<_, InvalidInput>(assembly)
-    };
     let mut settings = BranchSettings::over(8.0, 20.0);
     settings.step = 0.01;
     settings.longest_step = 0.02;
     settings.max_orbits = 400;
-    let branch = follow_branch(build, &settings, &|| false).unwrap();
+    let branch = follow_branch(hardening, &settings, &|| false).unwrap();
     // The steady motion without the stop reaches it where its amplitude equals the gap.
     let amplitude = |w: f64| 0.6 / ((100.0 - w * w).powi(2) + (0.4 * w).powi(2)).sqrt();
     let (mut low, mut high) = (8.0, 10.0);

@@ -34,6 +34,10 @@ const ITERATIONS_MAX: u32 = 8;
 const QUICK: u32 = 4;
 /// Number of bisections that locate a special point.
 const HALVINGS: u32 = 20;
+/// They end where the parameters on both sides differ by less than this part of its range, or, at a fold, where the sides are as near
+/// as this part of the step.
+const NEAR: f64 = 1e-8;
+const NEAR_FOLD: f64 = 1e-4;
 /// First step on a branch of twice the period, as a part of the first step of the others.
 const FIRST_OF_DOUBLED: f64 = 0.125;
 /// Largest number of iterations of a singular value decomposition.
@@ -125,7 +129,8 @@ pub struct SpecialPoint {
     pub kind: Special,
     /// The parameter.
     pub parameter: f64,
-    /// Uncertainty of the parameter: half the distance of the two orbits on either side.
+    /// Uncertainty of the parameter: half the distance of the two orbits on either side; at a fold, the distance of a third one that
+    /// is farther away.
     pub uncertainty: f64,
     /// Index of the first orbit of the branch after the point.
     pub before_orbit: usize,
@@ -197,12 +202,9 @@ pub fn follow_doubled<L: ContactLaw + Clone, E: From<InvalidInput>>(
     follower.follow(BranchPoint { parameter: doubling.parameter, orbit: *orbit }, Some(tangent))
 }
 
-/// The special points between two neighbours on a branch; `turn` is negative if the parameter turns between them.
-fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
+/// The special points between two neighbours on a branch, except folds.
+fn differences(one: &Orbit, other: &Orbit) -> Vec<Special> {
     let mut found = Vec::new();
-    if turn < 0.0 {
-        found.push(Special::Fold);
-    }
     let change = |beyond: fn(&[f64; 2]) -> bool| {
         let count = |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| beyond(m)).count();
         count(one).abs_diff(count(other))
@@ -273,6 +275,7 @@ where
         // the state changes fastest where a branch of twice the period begins
         let mut step = if self.half.is_some() { FIRST_OF_DOUBLED * settings.step } else { settings.step };
         let mut asymmetry: Option<DVector<f64>> = None;
+        let mut rises = self.rises(&current, &tangent)?;
         let mut turned = false;
         while branch.points.len() < settings.max_orbits {
             let found = self.step(&current, &tangent, step)?;
@@ -310,10 +313,11 @@ where
             asymmetry = Some(moved);
             let next = self.within_range(&current, next)?;
             let new_tangent = self.between(&current, &next, &tangent);
-            let turn = tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1];
+            let rises_next = self.rises(&next, &new_tangent)?;
+            let turns = (rises != rises_next).then_some(Special::Fold);
             let mut special = Vec::new();
-            for kind in differences(&current.orbit, &next.orbit, turn) {
-                special.push(self.locate(&current, &tangent, step, kind, branch.points.len())?);
+            for kind in turns.into_iter().chain(differences(&current.orbit, &next.orbit)) {
+                special.push(self.locate((&current, rises), (&tangent, step), kind, branch.points.len())?);
             }
             if (self.stop)() {
                 branch.interrupted = true;
@@ -322,7 +326,7 @@ where
             let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
             special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
             branch.special.append(&mut special);
-            (current, tangent, turned) = (next, new_tangent, false);
+            (current, tangent, rises, turned) = (next, new_tangent, rises_next, false);
             branch.points.push(current.clone());
             let (low, high) = settings.limits();
             if !(low < current.parameter && current.parameter < high) {
@@ -440,6 +444,13 @@ where
         Ok(Some(&tangent / tangent.norm()))
     }
 
+    /// Whether the parameter moves towards the end of its range where the branch passes an orbit in this direction, which is roughly
+    /// that of the branch. From one orbit to the next it may still rise although it has turned between them.
+    fn rises(&self, point: &BranchPoint, direction: &DVector<f64>) -> Result<bool, E> {
+        let along = self.first_tangent(point)?;
+        Ok(along.map_or(direction[direction.len() - 1], |along| along.dot(direction)) > 0.0)
+    }
+
     /// The unit vector from one orbit to the next, along the branch.
     fn between(&self, one: &BranchPoint, other: &BranchPoint, before: &DVector<f64>) -> DVector<f64> {
         let Ok(scales) = self.scales(one) else { return before.clone() };
@@ -523,36 +534,39 @@ where
         })
     }
 
-    /// A special point within a step, which comes before the orbit of this number.
+    /// A special point within a step from an orbit, at which the parameter rises or falls; it comes before the orbit of this number.
     fn locate(
         &self,
-        from: &BranchPoint,
-        tangent: &DVector<f64>,
-        step: f64,
+        (from, rises): (&BranchPoint, bool),
+        (tangent, step): (&DVector<f64>, f64),
         mut kind: Special,
         before_orbit: usize,
     ) -> Result<SpecialPoint, E> {
         let (mut low, mut high) = (0.0, step);
-        let (mut below, mut above) = (from.parameter, f64::NAN);
+        let (mut below, mut above, mut outside) = (from.parameter, f64::NAN, f64::NAN);
         let mut orbit = from.orbit.clone();
         let (mut before, mut after) = (from.orbit.clone(), None);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let Some(point) = self.step(from, tangent, middle)?.found() else { break };
-            // a fold is the extremum of the parameter
             let passed = if kind == Special::Fold {
-                let Some(beyond) = self.step(from, tangent, middle + 1e-3 * (high - low))?.found() else { break };
-                (beyond.parameter - point.parameter) * tangent[tangent.len() - 1] * self.range() < 0.0
+                self.rises(&point, tangent)? != rises
             } else {
-                differences(&from.orbit, &point.orbit, 1.0).contains(&kind)
+                differences(&from.orbit, &point.orbit).contains(&kind)
             };
             orbit = point.orbit;
             if passed {
-                (high, above, after) = (middle, point.parameter, Some(orbit.clone()));
+                (high, outside, above, after) = (middle, above, point.parameter, Some(orbit.clone()));
             } else {
-                (low, below, before) = (middle, point.parameter, orbit.clone());
+                (low, outside, below, before) = (middle, below, point.parameter, orbit.clone());
             }
-            if (above - below).abs() <= 1e-8 * self.range().abs() {
+            // at a fold the parameters on both sides may agree by accident, but differ from it by the square of the distance
+            let is_near = if kind == Special::Fold {
+                high - low <= NEAR_FOLD * step
+            } else {
+                (above - below).abs() <= NEAR * self.range().abs()
+            };
+            if is_near {
                 break;
             }
         }
@@ -560,12 +574,14 @@ where
             above = self.step(from, tangent, high)?.found().map_or(below, |point| point.parameter);
         }
         // two multipliers that pass -1 one after the other count as a pair until the second of them is located
-        let doubles =
-            |after: &Orbit| differences(&before, after, 1.0).iter().all(|kind| *kind == Special::PeriodDoubling);
+        let doubles = |after: &Orbit| differences(&before, after).iter().all(|kind| *kind == Special::PeriodDoubling);
         if kind == Special::NeimarkSacker && after.as_ref().is_some_and(doubles) {
             kind = Special::PeriodDoubling;
         }
-        let (parameter, uncertainty) = (0.5 * (below + above), 0.5 * (above - below).abs());
+        let (parameter, mut uncertainty) = (0.5 * (below + above), 0.5 * (above - below).abs());
+        if kind == Special::Fold {
+            uncertainty = uncertainty.max((outside - parameter).abs());
+        }
         Ok(SpecialPoint { kind, parameter, uncertainty, before_orbit, orbit })
     }
 }
@@ -588,7 +604,7 @@ mod tests {
             section_m: Vec::new(),
             iterations: 0,
         };
-        differences(&orbit(one), &orbit(other), 1.0)
+        differences(&orbit(one), &orbit(other))
     }
 
     /// Multipliers that meet beyond the unit circle, or leave the real axis there, pass nothing.
