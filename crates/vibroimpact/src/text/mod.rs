@@ -247,7 +247,7 @@ pub fn fit(fit: &FitSummary) -> String {
             Some(all) => format!("95 %: {} to {}", significant(all[k][0], 4), significant(all[k][1], 4)),
             None => "interval: these data do not determine one".to_owned(),
         };
-        let _ = writeln!(text, "  {name:<12}{:<14}{interval}", significant(*value, 6));
+        let _ = writeln!(text, "  {name:<12}{:<16}{interval}", significant(*value, 6));
     }
     let _ = writeln!(text, "  {:<12}{:.6}", "rms", fit.rms);
     let _ = writeln!(text, "  {:<12}{:.6}", "max_error", fit.max_error);
