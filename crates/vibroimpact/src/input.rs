@@ -31,6 +31,11 @@ pub(crate) fn read_all(source: impl Read, path: &Path) -> Result<Vec<u8>, SceneE
     Ok(bytes)
 }
 
+/// Name of a table in messages: that of its file without the folder, since a message shows only the beginning of a long path.
+pub(crate) fn table_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
 /// A table: a line of names, then rows of cells.
 pub(crate) struct Table {
     /// The names of the columns.

@@ -48,15 +48,21 @@ fn fit_takes_only_data_that_can_be_fitted() {
     for (table, part) in [
         (
             TABLE.replace("0.35", "1.3"),
-            "line 5, restitution = 1.3 is not allowed; it must be a coefficient of restitution from 0",
+            "data.csv, line 5, restitution = 1.3 is not allowed; it must be a coefficient of restitution from 0",
         ),
-        (TABLE.replace("0.35", "-0.3"), "line 5, restitution = -0.3"),
-        (TABLE.replace("0.4\n", "0.4,7\n"), "line 3 = 4 cells is not allowed"),
-        (TABLE.replace(",0.4\n", "\n"), "line 3 = 2 cells is not allowed"),
+        (TABLE.replace("0.35", "-0.3"), "data.csv, line 5, restitution = -0.3"),
+        (TABLE.replace("0.4\n", "0.4,7\n"), "data.csv, line 3 = 4 cells is not allowed"),
+        (TABLE.replace(",0.4\n", "\n"), "data.csv, line 3 = 2 cells is not allowed"),
         // lines that end with a carriage return alone, as some spreadsheets write them
-        (TABLE.replace(",0.4\n", "\n").replace('\n', "\r"), "line 3 = 2 cells is not allowed"),
-        (format!("{header}{}", "0.1,0.2,0.5\n".repeat(5)), "lines of data that differ in mass or location = 1"),
-        (format!("{header}{}", "0.1,0.2,0.5\n0.2,0.2,0.5\n".repeat(5)), "differ in mass or location = 2"),
+        (TABLE.replace(",0.4\n", "\n").replace('\n', "\r"), "data.csv, line 3 = 2 cells is not allowed"),
+        (
+            format!("{header}{}", "0.1,0.2,0.5\n".repeat(5)),
+            "data.csv, lines of data that differ in mass or location = 1",
+        ),
+        (
+            format!("{header}{}", "0.1,0.2,0.5\n0.2,0.2,0.5\n".repeat(5)),
+            "data.csv, lines of data that differ in mass or location = 2",
+        ),
     ] {
         let folder = folder(&[("scene.json", BEAM), ("data.csv", &table)]);
         let message = refused(folder.path(), &fit);

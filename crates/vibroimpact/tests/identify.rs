@@ -563,24 +563,28 @@ fn bad_input_is_refused_by_name() {
             "gauge.time_constant_s",
             "--free gauge.time_constant_s=low..high is missing; it must be an interval with limits greater than 0",
         ),
-        ("location\ntip\n", stiffness, "a measured quantity is missing"),
-        ("location,restitution\n", stiffness, "number of rows = 0 is not allowed"),
-        ("location,restitution\ntip,\n", stiffness, "measured values = 0 is not allowed"),
+        ("location\ntip\n", stiffness, "data.csv, a measured quantity is missing"),
+        ("location,restitution\n", stiffness, "data.csv, number of rows = 0 is not allowed"),
+        ("location,restitution\ntip,\n", stiffness, "data.csv, measured values = 0 is not allowed"),
         (
             "location,restitution\ntip,x\n",
             stiffness,
-            "line 2, restitution = x is not allowed; it must be a finite number",
+            "data.csv, line 2, restitution = x is not allowed; it must be a finite number",
         ),
-        ("location,restitution\n,0.3\n", stiffness, "line 2, location is missing"),
-        ("location,restitution\ntap,0.3\ntip,0.3\n", stiffness, "line 2, location = \"tap\" is not allowed"),
+        ("location,restitution\n,0.3\n", stiffness, "data.csv, line 2, location is missing"),
+        ("location,restitution\ntap,0.3\ntip,0.3\n", stiffness, "data.csv, line 2, location = \"tap\" is not allowed"),
         (
             "location,restitution,restitution_sd\ntip,0.3,0\n",
             stiffness,
-            "line 2, restitution_sd = 0.0 is not allowed; it must be a finite number greater than 0",
+            "data.csv, line 2, restitution_sd = 0.0 is not allowed; it must be a finite number greater than 0",
         ),
-        ("location,restitution,restitution_sd\ntip,0.3,\n", stiffness, "line 2, restitution_sd is missing"),
-        ("location,first_contact_s\ntip,-1\n", stiffness, "line 2, first_contact_s = -1.0 is not allowed"),
-        ("location,restitution,restitution\ntip,1,1\n", stiffness, "column restitution = 2 columns is not allowed"),
+        ("location,restitution,restitution_sd\ntip,0.3,\n", stiffness, "data.csv, line 2, restitution_sd is missing"),
+        ("location,first_contact_s\ntip,-1\n", stiffness, "data.csv, line 2, first_contact_s = -1.0 is not allowed"),
+        (
+            "location,restitution,restitution\ntip,1,1\n",
+            stiffness,
+            "data.csv, column restitution = 2 columns is not allowed",
+        ),
         (
             "location,first_contact_s,restitution_sd\ntip,1,1\n",
             stiffness,
@@ -594,7 +598,7 @@ fn bad_input_is_refused_by_name() {
         (
             "location,restitutoin,restitution\ntip,1,1\ntip,1,1\n",
             stiffness,
-            "line 2, restitutoin = 1.0 is not a known field; it must be one of ",
+            "data.csv, line 2, restitutoin = 1.0 is not a known field; it must be one of ",
         ),
         ("location,restituton,first_contact_s\ntip,1,1\ntip,1,1\n", stiffness, "force_file; did you mean restitution?"),
         (
@@ -608,7 +612,7 @@ fn bad_input_is_refused_by_name() {
         (
             "location,striker.mass_kg,restitution\ntip,-1,0.3\ntip,-1,0.3\n",
             stiffness,
-            "line 2, striker.mass_kg = -1.0 is not allowed",
+            "data.csv, line 2, striker.mass_kg = -1.0 is not allowed",
         ),
         (
             "location,restitution\ntip,0.3\n",
@@ -618,19 +622,23 @@ fn bad_input_is_refused_by_name() {
         (
             "location,force_file\ntip,../force.csv\n",
             stiffness,
-            "line 2, force_file = \"../force.csv\" is not allowed; it must be the path of a table in the folder of this one",
+            "data.csv, line 2, force_file = \"../force.csv\" is not allowed; it must be the path of a table in the folder of this one",
         ),
         ("location,force_file\ntip,none.csv\n", stiffness, "none.csv"),
         (
             "location,force_file\ntip,bad.csv\n",
             stiffness,
-            "bad.csv, line 3, time_s = 0.0 is not allowed; it must be a time after that of the line above",
+            "data.csv, line 2, bad.csv, line 3, time_s = 0.0 is not allowed; it must be a time after that of the line above",
         ),
-        ("location,force_file\ntip,short.csv\n", stiffness, "short.csv, number of samples = 1 is not allowed"),
+        (
+            "location,force_file\ntip,short.csv\n",
+            stiffness,
+            "data.csv, line 2, short.csv, number of samples = 1 is not allowed",
+        ),
         (
             "location,force_file\ntip,noise.csv\n",
             stiffness,
-            "noise.csv, column force_n_sd = 1 column is not allowed; it must be left out: a force history has the columns \
+            "data.csv, line 2, noise.csv, column force_n_sd = 1 column is not allowed; it must be left out: a force history has the columns \
              time_s and force_n, beside which only those of the history.csv of simulate are allowed (time_s, \
              structure_displacement_m, striker_displacement_m, structure_velocity_m_s, striker_velocity_m_s, compression_m, \
              force_n); its noise is stated in the column force_n_sd beside force_file",
@@ -726,16 +734,16 @@ fn bad_options_are_refused_by_name() {
         (["--starts", "0"], "it must be a whole number from 1 to 1000"),
         (
             ["--candidates", "next.csv"],
-            "column restitution = 1 column is not allowed; it must be left out of a table of candidates",
+            "next.csv, column restitution = 1 column is not allowed; it must be left out of a table of candidates",
         ),
         (["--candidates", "none.csv"], "cannot read none.csv"),
-        (["--candidates", "off.csv"], "the candidates, line 3, location = \"tap\" is not allowed; it must be one of"),
-        (["--candidates", "unknown.csv"], "the candidates, line 2, colour = 3.0 is not a known field"),
+        (["--candidates", "off.csv"], "off.csv, line 3, location = \"tap\" is not allowed; it must be one of"),
+        (["--candidates", "unknown.csv"], "unknown.csv, line 2, colour = 3.0 is not a known field"),
         (
             ["--candidates", "free.csv"],
             "column contact.stiffness_n_m1_5 = 1 column is not allowed; it must be left out of a table of candidates",
         ),
-        (["--candidates", "heavy.csv"], "the candidates, line 3, striker.mass_kg = -0.05 is not allowed"),
+        (["--candidates", "heavy.csv"], "heavy.csv, line 3, striker.mass_kg = -0.05 is not allowed"),
     ] {
         let arguments = ["identify", "data.csv", "--scene", "scene.json", "--free", "contact.stiffness_n_m1_5"];
         let output = run(folder.path(), &[&arguments[..], &options].concat());

@@ -5,6 +5,7 @@ use std::fs;
 
 use crate::program::{run, stdout};
 use serde_json::{Value, json};
+use vibroimpact::net::FitSummary;
 
 /// A pinned beam of 1 kg, whose shapes are sqrt(2) sin(k pi x) exactly.
 const PINNED: &str = r#"{ "structure": { "kind": "beam", "ends": ["pinned", "pinned"],
@@ -168,32 +169,32 @@ fn bad_tables_are_refused_with_their_line() {
     let header = "mass_kg,location_m,restitution\n";
     let good = "0.1,0.2,0.5\n0.2,0.4,0.4\n0.3,0.3,0.3\n";
     for (table, part) in [
-        (String::new(), "column mass_kg is missing"),
-        ("mass_kg,location_m\n0.1,0.2\n".to_owned(), "column restitution is missing"),
-        (format!("restitution,{header}"), "column restitution = 2 columns"),
-        (header.to_owned(), "lines of data = 0 is not allowed; it must be at least 3"),
-        (format!("{header}0.1,0.2,0.5\n"), "lines of data = 1"),
+        (String::new(), "data.csv, column mass_kg is missing"),
+        ("mass_kg,location_m\n0.1,0.2\n".to_owned(), "data.csv, column restitution is missing"),
+        (format!("restitution,{header}"), "data.csv, column restitution = 2 columns"),
+        (header.to_owned(), "data.csv, lines of data = 0 is not allowed; it must be at least 3"),
+        (format!("{header}0.1,0.2,0.5\n"), "data.csv, lines of data = 1"),
         (
             format!("{header}{good}0.1,0.2,high\n"),
-            "line 5, restitution = high is not allowed; it must be a finite number",
+            "data.csv, line 5, restitution = high is not allowed; it must be a finite number",
         ),
-        (format!("{header}{good}\n0.1,0.2,NaN\n"), "line 6, restitution = NaN"),
-        (format!("{header}{good}\n\n0.1,0.2,NaN\n").replace('\n', "\r\n"), "line 7, restitution = NaN"),
-        (format!("\u{feff}{header}0.1,0.2,NaN\n"), "line 2, restitution = NaN"),
-        (format!("{header}{good}0.1,0.2,inf\n"), "line 5, restitution = inf"),
-        (format!("{header}{good}0.1,0.2,1e300\n"), "line 5, restitution = 1"),
+        (format!("{header}{good}\n0.1,0.2,NaN\n"), "data.csv, line 6, restitution = NaN"),
+        (format!("{header}{good}\n\n0.1,0.2,NaN\n").replace('\n', "\r\n"), "data.csv, line 7, restitution = NaN"),
+        (format!("\u{feff}{header}0.1,0.2,NaN\n"), "data.csv, line 2, restitution = NaN"),
+        (format!("{header}{good}0.1,0.2,inf\n"), "data.csv, line 5, restitution = inf"),
+        (format!("{header}{good}0.1,0.2,1e300\n"), "data.csv, line 5, restitution = 1"),
         (
             format!("{header}{good}0.1,0.2\n"),
-            "line 5 = 2 cells is not allowed; it must be as long as the line of names, which has 3 cells",
+            "data.csv, line 5 = 2 cells is not allowed; it must be as long as the line of names, which has 3 cells",
         ),
-        (format!("{header}{good}0.1,,0.5\n"), "line 5, location_m is missing"),
-        (format!("{header}0.1,1.01,0.5\n{good}"), "line 2, location_m = 1.01 is not allowed"),
-        (format!("{header}0.1,-0.01,0.5\n{good}"), "line 2, location_m = -0.01"),
+        (format!("{header}{good}0.1,,0.5\n"), "data.csv, line 5, location_m is missing"),
+        (format!("{header}0.1,1.01,0.5\n{good}"), "data.csv, line 2, location_m = 1.01 is not allowed"),
+        (format!("{header}0.1,-0.01,0.5\n{good}"), "data.csv, line 2, location_m = -0.01"),
         (
             format!("{header}0,0.5,0.5\n{good}"),
-            "line 2, mass_kg = 0.0 is not allowed; it must be a finite number greater than 0",
+            "data.csv, line 2, mass_kg = 0.0 is not allowed; it must be a finite number greater than 0",
         ),
-        (format!("{header}-1,0.5,0.5\n{good}"), "line 2, mass_kg = -1.0"),
+        (format!("{header}-1,0.5,0.5\n{good}"), "data.csv, line 2, mass_kg = -1.0"),
     ] {
         let message = refusal(PINNED, Some(table.as_bytes()), &fit);
         assert!(message.contains(part), "{part}: {message}");
@@ -218,6 +219,26 @@ fn data_that_determine_nothing_still_give_a_result() {
     let found: Value =
         serde_json::from_str(&stdout(&run(folder.path(), &[&arguments[..], &["--json"]].concat()))).unwrap();
     assert!(found["intervals"].is_null() && number(&found, "rms") == 0.0);
+}
+
+/// The longest number that a fit can give does not run into the words beside it.
+#[test]
+fn a_parameter_at_its_limit_is_apart_from_its_interval() {
+    let (mu0, alpha0, alpha1) = (1.0, 1.0, 2.17174e-300);
+    let known = FitSummary {
+        mu0,
+        alpha0,
+        alpha1,
+        rms: 0.0,
+        max_error: 0.0,
+        count: 4,
+        modes: 50,
+        intervals: None,
+        converged: false,
+        undetermined: vec!["alpha1"],
+    };
+    let text = vibroimpact::text::fit(&known);
+    assert!(text.contains("2.17174×10⁻³⁰⁰  interval"), "{text}");
 }
 
 #[test]

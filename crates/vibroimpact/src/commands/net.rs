@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use vibroimpact::InvalidInput;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
@@ -101,7 +102,10 @@ pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
 /// Runs `fit` and returns the text to print.
 pub fn fit(FitArguments { data, scene, changes, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
     let scene = changes.draft(&scene)?.impact()?;
-    let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option(EMOC_MODES))?;
-    let fit = FitSummary::new(&observations, emoc_modes)?;
+    // an error without a line is one of the scene or of the option
+    let in_line = |fault: InvalidInput| if fault.field.has_place() { net::in_table(&data, fault) } else { fault };
+    let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(in_line);
+    let observations = observations.map_err(of_option(EMOC_MODES))?;
+    let fit = FitSummary::new(&observations, emoc_modes).map_err(|fault| net::in_table(&data, fault))?;
     if json { export::json(&fit) } else { Ok(text::fit(&fit)) }
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::gauge::{FORCE, FORCE_FILE, ForceRecord, SD};
 use super::quantity::Quantity;
-use crate::input::{Row as Cells, Table, read_bytes};
+use crate::input::{Row as Cells, Table, read_bytes, table_name};
 use crate::scene::FieldPath;
 use crate::scene::json::number;
 use crate::scene::require_positive;
@@ -22,6 +22,8 @@ const NEEDED: &str = "a table of comma-separated values whose line of names cont
 /// Measured impacts, one per row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Data {
+    /// Name of the table in messages; `None` for a text that has none.
+    pub name: Option<String>,
     /// Fields of the scene whose values the rows state.
     pub fields: Vec<FieldPath>,
     /// The rows.
@@ -47,9 +49,9 @@ impl Data {
     /// Reads a table of measurements, and the force histories that it names, from its folder or below.
     ///
     /// # Errors
-    /// A file that cannot be read; a column or a cell that cannot be used, by line and name.
+    /// A file that cannot be read; a column or a cell that cannot be used, by file, line and name.
     pub fn read(path: &Path) -> Result<Data, SceneError> {
-        Data::from_table(&read_bytes(path)?, folder_of(path))
+        named(path, Data::from_table(&read_bytes(path)?, folder_of(path)))
     }
 
     /// The files of a table that was read from `path`: this one, and the force histories that it names.
@@ -103,7 +105,7 @@ impl Data {
         if values == 0 {
             return Err(InvalidInput::new("measured values", "0", "at least 1").into());
         }
-        Ok(Data { fields: columns.fields(), rows, stated })
+        Ok(Data { name: None, fields: columns.fields(), rows, stated })
     }
 
     /// Whether it contains measurements, and not only fields of the scene.
@@ -116,7 +118,7 @@ impl Data {
     /// # Errors
     /// A file that cannot be read; a column of measured values, or a cell that cannot be used.
     pub fn read_candidates(path: &Path) -> Result<Data, SceneError> {
-        Data::parse_candidates(&read_bytes(path)?)
+        named(path, Data::parse_candidates(&read_bytes(path)?))
     }
 
     /// Reads such a table from the bytes of a file.
@@ -132,7 +134,7 @@ impl Data {
             return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed).into());
         }
         let rows = columns.rows(&table, &|_| Ok(Vec::new()))?;
-        Ok(Data { fields: columns.fields(), rows, stated: false })
+        Ok(Data { name: None, fields: columns.fields(), rows, stated: false })
     }
 }
 
@@ -226,10 +228,20 @@ impl Columns {
                 cells.fault(InvalidInput { allowed, ..fault })
             };
             let path: PathBuf = table_path(FORCE_FILE, name).map_err(beside)?.to_owned();
-            let record = ForceRecord::parse(name, &open(&path)?)?;
+            let record = ForceRecord::parse(name, &open(&path)?).map_err(|fault| cells.fault(fault))?;
             row.force = Some((record, deviation(cells, sd, FORCE)?));
         }
         Ok(row)
+    }
+}
+
+/// A table as that of the file at `path`, which errors in it name.
+fn named(path: &Path, table: Result<Data, SceneError>) -> Result<Data, SceneError> {
+    let name = table_name(path);
+    match table {
+        Ok(data) => Ok(Data { name: Some(name), ..data }),
+        Err(SceneError::Invalid(fault)) => Err(fault.in_place(name).into()),
+        Err(other) => Err(other),
     }
 }
 

@@ -78,7 +78,7 @@ impl<'a> Model<'a> {
                     "that of a structure with modes: a beam, string or plate with ends, a rod, or a list of modes";
                 return Err(InvalidInput::new(["structure", "kind"], scene.structure.kind(), allowed));
             }
-            let in_line = |fault| in_line(row, fault);
+            let in_line = |fault| model.in_line(row, fault);
             scene.check().map_err(in_line)?;
             let count = if !chooses_modes(&scene) {
                 scene.modes.count()
@@ -140,7 +140,7 @@ impl<'a> Model<'a> {
     fn require_impacts(&self, parameters: &[f64], kept: &mut Kept) -> Result<(), InvalidInput> {
         let valid = |row: &Row| {
             let checked = self.scene(row, parameters)?.check().and_then(|()| self.impact(row, parameters, kept));
-            checked.map(drop).map_err(|fault| in_line(row, fault))
+            checked.map(drop).map_err(|fault| self.in_line(row, fault))
         };
         self.data.rows.iter().try_for_each(valid)
     }
@@ -152,9 +152,8 @@ impl<'a> Model<'a> {
             let allowed = "left out of a table of candidates, because the field is free";
             return Err(InvalidInput::new(format!("column {field}"), "1 column", allowed));
         }
-        self.for_table(candidates)
-            .require_impacts(parameters, &mut Kept::default())
-            .map_err(|fault| fault.in_place("the candidates"))
+        let checked = self.for_table(candidates).require_impacts(parameters, &mut Kept::default());
+        checked.map_err(|fault| if candidates.name.is_some() { fault } else { fault.in_place("the candidates") })
     }
 
     /// The same impacts for another table, with the number of modes that was chosen.
@@ -224,7 +223,16 @@ impl<'a> Model<'a> {
                 set(&path, json!(value));
             }
         }
-        faults.and_then(|()| Scene::from_value(&tree)).map_err(|fault| in_line(row, self.or_quantity(fault)))
+        faults.and_then(|()| Scene::from_value(&tree)).map_err(|fault| self.in_line(row, self.or_quantity(fault)))
+    }
+
+    /// An error in the scene of a row, with its line and the name of the table.
+    fn in_line(&self, row: &Row, fault: InvalidInput) -> InvalidInput {
+        let fault = fault.in_line(row.line);
+        match &self.data.name {
+            Some(name) => fault.in_place(name.clone()),
+            None => fault,
+        }
     }
 
     /// A column that is no field of the scene may be a measured quantity with a slip in its name.
@@ -322,9 +330,4 @@ fn largest_change(one: &[f64], other: &[f64]) -> f64 {
         _ => f64::MAX,
     };
     one.iter().zip(other).map(change).fold(0.0, f64::max)
-}
-
-/// An error in the scene of a row, with its line.
-fn in_line(row: &Row, fault: InvalidInput) -> InvalidInput {
-    fault.in_line(row.line)
 }

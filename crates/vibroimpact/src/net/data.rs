@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::fit::Observations;
 use super::{impact_on, require_vibration};
-use crate::input::{Row, Table, read_bytes};
+use crate::input::{Row, Table, read_bytes, table_name};
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene, SceneError, Structure};
 
@@ -28,9 +28,14 @@ pub struct Datum {
 /// Reads a CSV file with the columns `mass_kg`, `location_m` and `restitution`, in any order and among others.
 ///
 /// # Errors
-/// A file that cannot be read, a column that is missing, or a cell that is not a finite number (with its line).
+/// A file that cannot be read, a column that is missing, or a cell that is not a finite number (with file and line).
 pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
-    Ok(parse(&read_bytes(path)?)?)
+    Ok(parse(&read_bytes(path)?).map_err(|fault| in_table(path, fault))?)
+}
+
+/// An error in the table at `path`, as those of [`Scene::observations`] that name a line.
+pub fn in_table(path: &Path, fault: InvalidInput) -> InvalidInput {
+    fault.in_place(table_name(path))
 }
 
 /// Reads the same table from the bytes of a file.

@@ -8,7 +8,7 @@
 mod data;
 mod fit;
 
-pub use data::{Datum, parse, read};
+pub use data::{Datum, in_table, parse, read};
 pub use fit::{FitSummary, Observations, law};
 
 use emoc::{Impact, Parameters, Site};
