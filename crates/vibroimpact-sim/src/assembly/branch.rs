@@ -275,7 +275,8 @@ where
         // the state changes fastest where a branch of twice the period begins
         let mut step = if self.half.is_some() { FIRST_OF_DOUBLED * settings.step } else { settings.step };
         let mut asymmetry: Option<DVector<f64>> = None;
-        let mut rises = self.rises(&current, &tangent)?;
+        // where a branch of twice the period begins, the linearised map gives the direction of the other branch through that point
+        let mut rises = if self.half.is_some() { None } else { Some(self.rises(&current, &tangent)?) };
         let mut turned = false;
         while branch.points.len() < settings.max_orbits {
             let found = self.step(&current, &tangent, step)?;
@@ -314,10 +315,11 @@ where
             let next = self.within_range(&current, next)?;
             let new_tangent = self.between(&current, &next, &tangent);
             let rises_next = self.rises(&next, &new_tangent)?;
-            let turns = (rises != rises_next).then_some(Special::Fold);
+            let rises_here = rises.unwrap_or(new_tangent[new_tangent.len() - 1] > 0.0);
+            let turns = (rises_here != rises_next).then_some(Special::Fold);
             let mut special = Vec::new();
             for kind in turns.into_iter().chain(differences(&current.orbit, &next.orbit)) {
-                special.push(self.locate((&current, rises), (&tangent, step), kind, branch.points.len())?);
+                special.push(self.locate((&current, rises_here), (&tangent, step), kind, branch.points.len())?);
             }
             if (self.stop)() {
                 branch.interrupted = true;
@@ -326,7 +328,7 @@ where
             let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
             special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
             branch.special.append(&mut special);
-            (current, tangent, rises, turned) = (next, new_tangent, rises_next, false);
+            (current, tangent, rises, turned) = (next, new_tangent, Some(rises_next), false);
             branch.points.push(current.clone());
             let (low, high) = settings.limits();
             if !(low < current.parameter && current.parameter < high) {
