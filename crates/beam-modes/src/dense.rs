@@ -3,11 +3,11 @@
 //! The operators and solvers of faer use all threads if any package of a build turns on its feature `rayon`, and the rounding
 //! depends on the number of threads. The functions here always use one thread, so that modes have the same bits in every build.
 
-use faer::diag::{Diag, DiagRef};
+use faer::diag::{Diag, DiagMut, DiagRef};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::evd::{
-    ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch, tridiagonal_self_adjoint_evd,
+    ComputeEigenvectors, EvdError, self_adjoint_evd, self_adjoint_evd_scratch, tridiagonal_self_adjoint_evd,
 };
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -29,28 +29,30 @@ pub(crate) fn cholesky(matrix: MatRef<'_, f64>) -> Option<Mat<f64>> {
 /// The eigenvalues of a symmetric matrix in ascending order, and its orthonormal eigenvectors as columns; the lower triangle
 /// is read. `None` if they cannot be computed.
 pub(crate) fn eigen(matrix: MatRef<'_, f64>) -> Option<(Vec<f64>, Mat<f64>)> {
-    let n = matrix.nrows();
-    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
-    let scratch = self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
-    let mut buffer = MemBuffer::new(scratch);
-    let stack = MemStack::new(&mut buffer);
-    self_adjoint_evd(matrix, values.as_mut(), Some(vectors.as_mut()), Par::Seq, stack, Default::default()).ok()?;
-    Some((values.column_vector().iter().copied().collect(), vectors))
+    decompose(matrix.nrows(), |values, vectors, stack| {
+        self_adjoint_evd(matrix, values, Some(vectors), Par::Seq, stack, Default::default())
+    })
 }
 
 /// The same of a tridiagonal matrix, from its diagonal and the entries beside it, without the products of matrices by which a full one is
 /// made tridiagonal.
 pub(crate) fn eigen_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> Option<(Vec<f64>, Mat<f64>)> {
-    let n = diagonal.len();
+    decompose(diagonal.len(), |values, vectors, stack| {
+        let [diagonal, beside] = [diagonal, off_diagonal].map(DiagRef::from_slice);
+        tridiagonal_self_adjoint_evd(diagonal, beside, values, Some(vectors), Par::Seq, stack, Default::default())
+    })
+}
+
+/// Eigenvalues and eigenvectors by one of faer's solvers. The one for tridiagonal matrices does not state how much memory it needs. It is
+/// a part of the one for full matrices, whose memory suffices.
+fn decompose(
+    n: usize,
+    solve: impl FnOnce(DiagMut<'_, f64>, MatMut<'_, f64>, &mut MemStack) -> Result<(), EvdError>,
+) -> Option<(Vec<f64>, Mat<f64>)> {
     let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
-    // the tridiagonal solver states no need of its own; it is a part of the full one
     let scratch = self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
     let mut buffer = MemBuffer::new(scratch);
-    let stack = MemStack::new(&mut buffer);
-    let [diagonal, off_diagonal] = [diagonal, off_diagonal].map(DiagRef::from_slice);
-    let into = Some(vectors.as_mut());
-    tridiagonal_self_adjoint_evd(diagonal, off_diagonal, values.as_mut(), into, Par::Seq, stack, Default::default())
-        .ok()?;
+    solve(values.as_mut(), vectors.as_mut(), MemStack::new(&mut buffer)).ok()?;
     Some((values.column_vector().iter().copied().collect(), vectors))
 }
 

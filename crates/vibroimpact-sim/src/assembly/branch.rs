@@ -11,7 +11,8 @@
 //! | Neimark-Sacker | a pair of complex multipliers at size 1 |
 //! | grazing | an interval of contact appears or disappears: the surfaces touch with zero speed |
 //!
-//! Each special point is located by bisection between the orbits on either side.
+//! Each special point is located by bisection between the orbits on either side. For a fold the direction of the branch decides, which
+//! follows from the linearised map at an orbit.
 //!
 //! At a period doubling a branch of twice the period begins, in the direction of the multiplier's eigenvector
 //! ([`follow_doubled`]). It may end there or at another period doubling of the same branch.
@@ -173,7 +174,7 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     };
     let mut follower = Follower::new(build, settings, &first, stop);
     let start = BranchPoint { parameter: settings.from, orbit: *first };
-    let tangent = follower.first_tangent(&start)?;
+    let tangent = follower.rising_tangent(&start)?;
     follower.follow(start, tangent)
 }
 
@@ -435,7 +436,7 @@ where
     }
 
     /// The unit vector along the branch, with the parameter towards the end of its range.
-    fn first_tangent(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, E> {
+    fn rising_tangent(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, E> {
         let scales = self.scales(point)?;
         let state = Self::state(&point.orbit);
         let n = state.len();
@@ -449,7 +450,7 @@ where
     /// Whether the parameter moves towards the end of its range where the branch passes an orbit in this direction, which is roughly
     /// that of the branch. From one orbit to the next it may still rise although it has turned between them.
     fn rises(&self, point: &BranchPoint, direction: &DVector<f64>) -> Result<bool, E> {
-        let along = self.first_tangent(point)?;
+        let along = self.rising_tangent(point)?;
         Ok(along.map_or(direction[direction.len() - 1], |along| along.dot(direction)) > 0.0)
     }
 

@@ -27,6 +27,7 @@ pub(super) fn settings(tolerance: f64, tightened: usize) -> Settings {
     let tolerance = share.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1);
     Settings { tolerance, estimate_uncertainty: false, ..Settings::default() }
 }
+
 /// One number of modes and its result.
 pub(super) struct Rung {
     /// Number of modes from the lowest, including those that are not excited.
