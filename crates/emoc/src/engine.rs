@@ -107,7 +107,8 @@ impl Kept {
     }
 }
 
-/// One thread, no output, no change of the pattern; for "almost solved" a thousand times the tolerance is allowed.
+/// One thread, no output, no change of the pattern; for "almost solved" a thousand times the tolerance is allowed. By the tolerances of
+/// Clarabel itself the first iterates of a program with a minimum can pass for a proof that it has none.
 fn settings(tolerance: f64) -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
@@ -116,9 +117,13 @@ fn settings(tolerance: f64) -> DefaultSettings<f64> {
         tol_gap_abs: tolerance,
         tol_gap_rel: tolerance,
         tol_feas: tolerance,
+        tol_infeas_abs: tolerance,
+        tol_infeas_rel: tolerance,
         reduced_tol_gap_abs: 1e3 * tolerance,
         reduced_tol_gap_rel: 1e3 * tolerance,
         reduced_tol_feas: 1e3 * tolerance,
+        reduced_tol_infeas_abs: 1e3 * tolerance,
+        reduced_tol_infeas_rel: 1e3 * tolerance,
         ..DefaultSettings::default()
     }
 }

@@ -85,6 +85,12 @@ impl Solver {
                 None => too_much = share,
             }
         }
+        // The first attempt had no active rows of a neighbour to begin with, and may have stopped for that.
+        if too_much == 1.0
+            && let Some(point) = scaled.attempt(&mut self.emoc, &attained, 1.0)
+        {
+            return Ok(scaled.solution(Outcome::Solved, &point));
+        }
         Ok(scaled.solution(Outcome::Relaxed { share: met }, &best))
     }
 

@@ -200,6 +200,46 @@ fn a_striker_far_heavier_than_the_structure() {
     }
 }
 
+/// Heavy strikers on a hundred modes, of which the contact hardly excites some.
+#[test]
+fn modes_that_are_hardly_excited() {
+    let phi: Vec<f64> = (1..=116).map(|k| 0.3 * (1.7 * f64::from(k)).sin().powi(3)).collect();
+    let sum: f64 = phi.iter().map(|phi| phi * phi).sum();
+    for mass_kg in [1.0, 30.0, 770.0, 2e4, 1e5] {
+        for c in [coefficients(0.937, 0.0285, 0.0), coefficients(0.9, 0.3, 0.2), coefficients(1.0, 0.0, 0.0)] {
+            let solution = Solver::new().solve(&single(mass_kg, &phi, c)).unwrap();
+            assert_eq!(solution.outcome, Outcome::Solved, "{mass_kg} kg, {c:?}");
+            let expected = c.rebound(mass_kg * sum).unwrap().restitution;
+            assert!((solution.velocity_m_s[0] - expected).abs() < 1e-9, "{mass_kg} kg, {c:?}: {solution:?}");
+        }
+    }
+}
+
+/// Demands that can be met are not lowered, although the iteration stops early on them if no active rows are known.
+#[test]
+fn demands_that_can_be_met_are_not_relaxed() {
+    let contact = |c| Contact { friction: Friction::None, coefficients: c };
+    let modes = [
+        (-0.142, [0.0384, 0.0]),
+        (0.113, [0.0384, 0.0]),
+        (-0.0733, [-0.0384, 0.0]),
+        (-0.093, [0.0448, 0.0724]),
+        (-0.0316, [-0.0701, 0.0]),
+        (-0.305, [0.0254, 0.0478]),
+        (-0.262, [0.0, 0.00252]),
+        (0.0372, [0.0, -0.00118]),
+        (-0.471, [0.00294, -0.0182]),
+        (0.0914, [0.0, -0.0502]),
+    ];
+    let problem = Problem {
+        contacts: vec![contact(coefficients(0.724, 0.439, 0.603)), contact(coefficients(0.754, 1.92, 0.0))],
+        inverse_inertia_per_kg: vec![771.0, 0.0, 0.0, 0.00278],
+        velocity_m_s: vec![-0.0462, -0.141],
+        modes: modes.iter().map(|&(rate, shape)| Mode { rate, shape: shape.to_vec() }).collect(),
+    };
+    assert_eq!(Solver::new().solve(&problem).unwrap().outcome, Outcome::Solved);
+}
+
 /// Two strikers on structures of their own, of which one weighs many times the other: two single impacts, or demands that are lowered.
 #[test]
 fn a_light_and_a_heavy_striker() {
