@@ -27,10 +27,12 @@ inequalities, which has a closed form in the mode shapes at the point of impact,
   e = ebar max(1/(1+Z), (beta0+beta1)/(1+beta0)),   Z = m sum phi_k^2,   t = mu0 Z,   ebar = (t^2+1)/(t^2+t+1),
   beta0 = x/(1+x) with x = alpha0 Z/N,              beta1 = y/(1+y) with y = alpha1 m phi_1^2.
 
-The branch printed is the term that is active. Contact, speed and frequencies do not enter. Parameters for a beam come
-from `vibroimpact fit`; the defaults are not fitted to any data. The model emoc of `vibroimpact compare` is another law: its
-two parameters are fixed, its error on beams that it was not fitted to is stated, and it takes the duration of the contact
-into account (docs/choosing-the-model.md).";
+The branch printed is the term that is active. Contact, speed and frequencies do not enter. The mode shapes are those of
+Timoshenko's theory if the scene states no modes and every segment has the data for it; structure.theory=euler-bernoulli
+gives those of the thesis. Parameters for a beam come from `vibroimpact fit` with the same scene; the defaults are not
+fitted to any data. The model emoc of `vibroimpact compare` is another law: its two parameters are fixed, its error on
+beams that it was not fitted to is stated, and it takes the duration of the contact into account
+(docs/choosing-the-model.md).";
 
 pub const FIT_EXAMPLES: &str = "Examples:
   vibroimpact fit measured.csv --scene ball.json           the three parameters, their intervals, the error
@@ -42,10 +44,12 @@ The table is comma-separated, its first line names the columns:
   0.0638,0.25,0.41
   0.0638,0.50,0.38
 
-Other columns are ignored. The scene gives the beam; masses and locations come from the table. At least three lines are
-needed, and they should cover light and heavy strikers. The search starts from many points, because the sum of squares
-has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
-a law with three parameters are not: take them as a lower bound on the uncertainty.";
+Other columns are ignored. The scene gives the beam; masses and locations come from the table. Its mode shapes are those
+of Timoshenko's theory if it states no modes and every segment has the data for it; structure.theory=euler-bernoulli gives
+those of the thesis. At least three lines are needed, and they should cover light and heavy strikers. The search starts
+from many points, because the sum of squares has several minima. Intervals hold each parameter with 95 % probability if
+the errors are independent, which those of a law with three parameters are not: take them as a lower bound on the
+uncertainty.";
 
 /// The scene and the parameters of the law.
 #[derive(Args)]
