@@ -242,6 +242,79 @@ fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
     assert!((highest(&reached) / highest(&stable.orbit) - 1.0).abs() < 1e-6, "{reached:?} {stable:?}");
 }
 
+/// A mass that rattles between two stiff walls with the restitution `e`, in the frame of the walls, which are shaken with the acceleration
+/// `a sin(omega t)`; and the closed form of its symmetric motion, one impact at each wall a period.
+struct Rattle {
+    e: f64,
+    omega: f64,
+    /// Half of the way between the walls (m).
+    half_m: f64,
+}
+
+impl Rattle {
+    /// Phase of the impact at one wall, and the speed before it: half a period later the mass has crossed, and meets the other as fast.
+    fn symmetric(&self, a: f64) -> (f64, f64) {
+        let &Rattle { e, omega, half_m } = self;
+        let factor = PI * (1.0 + e) / (1.0 - e);
+        let phase = 2.0f64.atan2(factor) - (2.0 * half_m * omega * omega / a / factor.hypot(2.0)).acos();
+        (phase, 2.0 * a * phase.cos() / (omega * (1.0 - e)))
+    }
+
+    /// `1 + trace + determinant` of the map of phase and speed from one wall to the other, mirrored: negative beyond an eigenvalue of -1.
+    /// Over a whole period it is +1, and the motion loses its symmetry.
+    fn remains_symmetric(&self, a: f64) -> f64 {
+        let &Rattle { e, omega, .. } = self;
+        let ((phase, speed), half_period) = (self.symmetric(a), PI / omega);
+        let moved = -a * half_period / omega * phase.sin() + 2.0 * a / (omega * omega) * phase.cos();
+        let (sped, pull) = (-2.0 * a / omega * phase.sin(), -a * phase.sin());
+        let by_phase = [1.0 - omega * moved / speed, e * (sped - pull * moved / speed)];
+        let by_speed = [-PI / speed, e * (1.0 - pull * half_period / speed)];
+        1.0 + by_phase[0] + by_speed[1] + by_phase[0] * by_speed[1] - by_phase[1] * by_speed[0]
+    }
+
+    fn shaken(&self, a: f64) -> Assembly<Law> {
+        let m = 0.1f64;
+        let (k, zeta) = (1e10, restitution_damping(self.e));
+        let law = Law::from(KelvinVoigt::new(k, 2.0 * zeta * (k * m).sqrt()).unwrap());
+        let mass = || Point::OfBody { body: 0, shape: vec![m.sqrt().recip()] };
+        let wall = |sides| Contact { sides, gap_m: self.half_m, law };
+        let (phase_rad, speed) = self.symmetric(a);
+        let force = Force::Harmonic { force_n: m * a, omega_rad_s: self.omega, phase_rad };
+        Assembly {
+            bodies: vec![Body::mass(m, -self.half_m, self.e * speed)],
+            contacts: vec![wall([mass(), Point::Ground]), wall([Point::Ground, mass()])],
+            loads: vec![Load { body: 0, shape: vec![m.sqrt().recip()], force }],
+        }
+    }
+}
+
+#[test]
+fn a_rattling_mass_loses_its_symmetry_at_the_closed_forms_threshold() {
+    let rattle = Rattle { e: 0.7, omega: 100.0 * PI, half_m: 2e-3 };
+    let (mut low, mut high) = (100.0, 200.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if rattle.remains_symmetric(middle) > 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let pitchfork = |step: f64| {
+        let mut settings = BranchSettings { step, ..BranchSettings::over(100.0, 160.0) };
+        settings.orbit.transient_periods = 0;
+        let branch = follow_branch(|a| Ok::<_, InvalidInput>(rattle.shaken(a)), &settings, &|| false).unwrap();
+        let [pitchfork] = &branch.special[..] else { panic!("{:?}", branch.special) };
+        assert_eq!(pitchfork.kind, Special::Pitchfork);
+        assert!(branch.points.iter().all(|p| p.orbit.stable == (p.parameter < pitchfork.parameter)));
+        pitchfork.clone()
+    };
+    let one = pitchfork(0.02);
+    // a contact takes 10 us of a period of 20 ms
+    assert!((one.parameter / low - 1.0).abs() < 2e-3, "{} {low}", one.parameter);
+    for step in [0.011, 0.031] {
+        let other = pitchfork(step);
+        let apart = (other.parameter - one.parameter).abs();
+        assert!(apart <= other.uncertainty + one.uncertainty && other.uncertainty < 1e-6, "{other:?} {one:?}");
+    }
+}
+
 /// Loads of 1 and 1.5 Hz repeat themselves every 2 s. Without contact the orbit is the sum of two steady motions.
 #[test]
 fn loads_with_a_common_period_have_an_orbit() {

@@ -7,6 +7,7 @@
 //! | point | what changes |
 //! |---|---|
 //! | fold | the parameter turns: a multiplier at +1 |
+//! | pitchfork | a symmetric motion loses its symmetry, or another branch crosses: a multiplier at +1, and the parameter does not turn |
 //! | period doubling | a multiplier at -1 |
 //! | Neimark-Sacker | a pair of complex multipliers at size 1 |
 //! | grazing | an interval of contact appears or disappears: the surfaces touch with zero speed |
@@ -29,8 +30,10 @@ use std::collections::BTreeSet;
 
 /// Change of the parameter for finite differences, relative to its range.
 const DIFFERENCE: f64 = 1e-6;
-/// Newton iterations of a step along the branch.
+/// Newton iterations of a step along the branch, and of one that locates a special point: at a pitchfork the equations are singular, and
+/// beside it Newton's method halves the error first.
 const ITERATIONS_MAX: u32 = 8;
+const ITERATIONS_MAX_AT_SPECIAL: u32 = 32;
 /// After a step with fewer iterations than this the next step is longer.
 const QUICK: u32 = 4;
 /// Number of bisections that locate a special point.
@@ -39,6 +42,8 @@ const HALVINGS: u32 = 20;
 /// as this part of the step.
 const NEAR: f64 = 1e-8;
 const NEAR_FOLD: f64 = 1e-4;
+/// A multiplier that is farther than this from +1 at the located point has not passed it: at a graze it jumps.
+const AT_ONE: f64 = 1e-2;
 /// First step on a branch of twice the period, as a part of the first step of the others.
 const FIRST_OF_DOUBLED: f64 = 0.125;
 /// Largest number of iterations of a singular value decomposition.
@@ -99,6 +104,9 @@ impl BranchSettings {
 pub enum Special {
     /// The branch turns back in the parameter.
     Fold,
+    /// A multiplier passes +1 although the parameter does not turn: a symmetric motion loses its symmetry, and two that are mirror images
+    /// of each other begin, or, in motions without symmetry rarely, another branch crosses.
+    Pitchfork,
     /// A multiplier passes -1.
     PeriodDoubling,
     /// A pair of complex multipliers passes the unit circle.
@@ -109,6 +117,7 @@ pub enum Special {
 
 invalid_input::names!(Special, "special", {
     Fold: "fold",
+    Pitchfork: "pitchfork",
     PeriodDoubling: "period doubling",
     NeimarkSacker: "Neimark-Sacker",
     Grazing: "grazing",
@@ -203,7 +212,7 @@ pub fn follow_doubled<L: ContactLaw + Clone, E: From<InvalidInput>>(
     follower.follow(BranchPoint { parameter: doubling.parameter, orbit: *orbit }, Some(tangent))
 }
 
-/// The special points between two neighbours on a branch, except folds.
+/// The special points between two neighbours on a branch. A multiplier that passes +1 counts as a pitchfork, which may be a fold.
 fn differences(one: &Orbit, other: &Orbit) -> Vec<Special> {
     let mut found = Vec::new();
     let change = |beyond: fn(&[f64; 2]) -> bool| {
@@ -213,6 +222,9 @@ fn differences(one: &Orbit, other: &Orbit) -> Vec<Special> {
     // two real multipliers beyond the same end of the circle may become a pair there, which passes nothing
     let flips = change(|m| m[1] == 0.0 && m[0] < -1.0) % 2;
     let turns = change(|m| m[1] == 0.0 && m[0] > 1.0) % 2;
+    if turns == 1 {
+        found.push(Special::Pitchfork);
+    }
     if flips == 1 {
         found.push(Special::PeriodDoubling);
     }
@@ -223,6 +235,10 @@ fn differences(one: &Orbit, other: &Orbit) -> Vec<Special> {
         found.push(Special::Grazing);
     }
     found
+}
+
+fn has_multiplier_at_one(orbit: &Orbit) -> bool {
+    orbit.floquet_multipliers.iter().any(|m| (m[0] - 1.0).hypot(m[1]) < AT_ONE)
 }
 
 /// A step along a branch.
@@ -280,7 +296,7 @@ where
         let mut rises = if self.half.is_some() { None } else { Some(self.rises(&current, &tangent)?) };
         let mut turned = false;
         while branch.points.len() < settings.max_orbits {
-            let found = self.step(&current, &tangent, step)?;
+            let found = self.step(&current, &tangent, step, ITERATIONS_MAX)?;
             let found = match found {
                 Step::Found(next, iterations) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
                 Step::Remembers(contact) if self.remembering.insert(contact) || !turned => {
@@ -317,11 +333,20 @@ where
             let new_tangent = self.between(&current, &next, &tangent);
             let rises_next = self.rises(&next, &new_tangent)?;
             let rises_here = rises.unwrap_or(new_tangent[new_tangent.len() - 1] > 0.0);
-            let turns = (rises_here != rises_next).then_some(Special::Fold);
+            let mut kinds = differences(&current.orbit, &next.orbit);
+            let turns = rises_here != rises_next;
+            // a branch of twice the period begins with a multiplier at +1
+            if turns || rises.is_none() {
+                kinds.retain(|kind| *kind != Special::Pitchfork);
+            }
+            if turns {
+                kinds.push(Special::Fold);
+            }
             let mut special = Vec::new();
-            for kind in turns.into_iter().chain(differences(&current.orbit, &next.orbit)) {
+            for kind in kinds {
                 special.push(self.locate((&current, rises_here), (&tangent, step), kind, branch.points.len())?);
             }
+            special.retain(|point| point.kind != Special::Pitchfork || has_multiplier_at_one(&point.orbit));
             if (self.stop)() {
                 branch.interrupted = true;
                 break;
@@ -486,13 +511,13 @@ where
         Ok(true)
     }
 
-    /// The next orbit along the tangent, and the number of iterations.
-    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Step, E> {
+    /// The next orbit along the tangent, and the number of iterations, of which there may be so many.
+    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64, iterations_max: u32) -> Result<Step, E> {
         let scales = self.scales(from)?;
         let base = self.scaled(from, &scales);
         let n = scales.len();
         let mut at = &base + step * tangent;
-        for iteration in 1..=ITERATIONS_MAX {
+        for iteration in 1..=iterations_max {
             let state = at.rows(0, n).component_mul(&scales);
             let parameter = at[n] * self.range();
             let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
@@ -545,13 +570,14 @@ where
         mut kind: Special,
         before_orbit: usize,
     ) -> Result<SpecialPoint, E> {
+        let at = |step: f64| self.step(from, tangent, step, ITERATIONS_MAX_AT_SPECIAL).map(Step::found);
         let (mut low, mut high) = (0.0, step);
         let (mut below, mut above, mut outside) = (from.parameter, f64::NAN, f64::NAN);
         let mut orbit = from.orbit.clone();
         let (mut before, mut after) = (from.orbit.clone(), None);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            let Some(point) = self.step(from, tangent, middle)?.found() else { break };
+            let Some(point) = at(middle)? else { break };
             let passed = if kind == Special::Fold {
                 self.rises(&point, tangent)? != rises
             } else {
@@ -574,7 +600,7 @@ where
             }
         }
         if above.is_nan() {
-            above = self.step(from, tangent, high)?.found().map_or(below, |point| point.parameter);
+            above = at(high)?.map_or(below, |point| point.parameter);
         }
         // two multipliers that pass -1 one after the other count as a pair until the second of them is located
         let doubles = |after: &Orbit| differences(&before, after).iter().all(|kind| *kind == Special::PeriodDoubling);
@@ -626,7 +652,8 @@ mod tests {
             (pair(-0.6, 0.7), pair(-0.6, 0.9), vec![Special::NeimarkSacker]),
             // a pair leaves the circle and becomes two real ones
             (pair(-0.9, 0.1), real(-1.2, -1.1), vec![Special::NeimarkSacker]),
-            (real(1.1, 0.5), real(0.9, 0.5), vec![]),
+            (real(1.1, 0.5), real(0.9, 0.5), vec![Special::Pitchfork]),
+            (real(1.2, 1.1), real(0.9, 0.8), vec![]),
         ];
         for (one, other, expected) in cases {
             assert_eq!(between(&one, &other), expected, "{one:?} {other:?}");

@@ -26,11 +26,11 @@ pub const EXAMPLES: &str = "Examples:
 
 The scene is one of bodies with a harmonic load, or with several that have a common period. After a transient from its
 start, Newton's method finds the periodic motion; its Floquet multipliers show whether it is stable. If it fails, the
-motion is followed for many more periods (--search), and Newton's method begins where it nearly repeats itself. Over a field (a
-path as in a sweep) the branch is followed round its folds, and folds, period doublings, Neimark-Sacker points and
-grazings are located. With --doublings the motions of twice the period that begin at period doublings are followed
-too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends the search and prints the
-results so far.
+motion is followed for many more periods (--search), and Newton's method begins where it nearly repeats itself. Over a
+field (a path as in a sweep) the branch is followed round its folds, and folds, losses of symmetry (pitchforks), period
+doublings, Neimark-Sacker points and grazings are located. With --doublings the motions of twice the period that begin
+at period doublings are followed too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends
+the search and prints the results so far.
 
 The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writing fails.";
 

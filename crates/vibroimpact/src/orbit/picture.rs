@@ -57,6 +57,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
     size = size.with(Series::horizontal_rule(1.0));
     for (kind, marker) in [
         (Special::Fold, Marker::Square),
+        (Special::Pitchfork, Marker::Plus),
         (Special::PeriodDoubling, Marker::Triangle),
         (Special::NeimarkSacker, Marker::Cross),
         (Special::Grazing, Marker::Circle),

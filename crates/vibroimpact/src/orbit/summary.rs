@@ -104,7 +104,7 @@ pub struct BranchOrbit {
 /// A point at which stability or the pattern of contacts changes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpecialPoint {
-    /// `fold`, `period doubling`, `Neimark-Sacker` or `grazing`.
+    /// `fold`, `pitchfork`, `period doubling`, `Neimark-Sacker` or `grazing`.
     pub kind: &'static str,
     /// The field's value.
     pub value: f64,
