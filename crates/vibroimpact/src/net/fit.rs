@@ -10,8 +10,9 @@ const SEARCH: (f64, f64) = (1e-3, 1e3);
 /// A parameter outside these limits is not determined: the law has reached its limit, and the sum of squares does not change any
 /// more.
 const DETERMINED: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
-/// Starting points. The sum of squares has several minima, because `ebar` treats small and large `Z` alike.
-const STARTS: usize = 24;
+/// Starting points. The sum of squares has several minima, because `ebar` treats small and large `Z` alike. The most promising of many
+/// candidates would be no better: they lie beside each other at a minimum that is wide and not the least.
+const STARTS: usize = 100;
 
 /// Impacts and the restitution that each was observed to have.
 #[derive(Debug, Clone, Default, PartialEq)]
