@@ -59,6 +59,24 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     assert_eq!(short["contacts"]["2-3"]["rms_force_n"], result["contacts"]["2-3"]["rms_force_n"]);
 }
 
+/// A ball that is pressed into the floor at the start: its energy is that of the contact alone.
+#[test]
+fn a_reader_can_close_the_energy_balance_of_an_interference() {
+    let scene = json!({
+        "bodies": { "ball": { "kind": "mass", "mass_kg": 0.3 } },
+        "contacts": [{ "name": "floor", "between": [{ "body": "ball" }, "ground"], "gap_m": -1e-4,
+                       "law": "kelvin-voigt", "stiffness_n_m": 1e6, "damping_n_s_m": 100 }],
+        "end_s": 0.01
+    });
+    let found = AssemblyScene::from_value(&scene).unwrap().simulate().unwrap();
+    let energy = serde_json::to_value(vibroimpact::assembly::Summary::new(&found)).unwrap()["energy"].clone();
+    let joule = |pointer: &str| energy.pointer(pointer).and_then(Value::as_f64).unwrap();
+    let start_j = joule("/bodies/ball/start_j") + joule("/contacts_stored_at_start_j");
+    let end_j = joule("/bodies/ball/end_j") + joule("/contacts_stored_j");
+    assert!((start_j - 0.5 * 1e6 * 1e-8).abs() < 1e-15, "{energy}");
+    assert!((start_j - end_j - joule("/contact_loss_j")).abs() < 1e-10 * start_j, "{energy}");
+}
+
 #[test]
 fn simulate_without_json_is_for_readers() {
     let folder = tempfile::tempdir().unwrap();

@@ -113,12 +113,14 @@ pub struct Point {
     pub velocity_m_s: f64,
 }
 
-/// The energy balance (J). The energy at the start plus `load_work_j` equals the energy at the end plus the losses plus the
-/// residual, which consists of their rounding.
+/// The energy balance (J). The energy of bodies and contacts at the start plus `load_work_j` equals their energy at the end plus the
+/// losses plus the residual, which consists of their rounding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Energy {
     /// Kinetic and elastic energy of each body.
     pub bodies: BTreeMap<String, BodyEnergy>,
+    /// Stored in the contacts at the start, where bodies interfere.
+    pub contacts_stored_at_start_j: f64,
     /// Stored in the contacts at the end.
     pub contacts_stored_j: f64,
     /// Work of the loads.
@@ -254,7 +256,8 @@ impl Summary {
                 bodies: (found.posed.bodies.iter().cloned())
                     .zip(ledger.bodies_j.iter().map(|[start_j, end_j]| BodyEnergy { start_j: *start_j, end_j: *end_j }))
                     .collect(),
-                contacts_stored_j: run.contacts.iter().map(|contact| contact.stored_j).sum(),
+                contacts_stored_at_start_j: ledger.stored_j[0],
+                contacts_stored_j: ledger.stored_j[1],
                 load_work_j: ledger.load_work_j,
                 modal_damping_j: ledger.modal_damping_j,
                 contact_loss_j: ledger.contact_loss_j,

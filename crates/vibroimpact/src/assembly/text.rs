@@ -109,15 +109,14 @@ const VISIBLE_ROUNDING: f64 = 1e-4;
 /// Energies in rows: where, and how much.
 pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
     let Some(energy) = &summary.energy else { return Vec::new() };
-    let body = |(name, body): (&String, &BodyEnergy)| {
-        [
-            name.clone(),
-            format!("{} at the start, {} at the end", quantity(body.start_j, "J"), quantity(body.end_j, "J")),
-        ]
+    let at_both_ends = |start_j: f64, end_j: f64| {
+        format!("{} at the start, {} at the end", quantity(start_j, "J"), quantity(end_j, "J"))
     };
+    let body = |(name, body): (&String, &BodyEnergy)| [name.clone(), at_both_ends(body.start_j, body.end_j)];
+    let stored = at_both_ends(energy.contacts_stored_at_start_j, energy.contacts_stored_j);
+    let stored = ["stored in contacts".to_owned(), stored];
     let [lost_j, unaccounted_j] = loss_and_residual(energy.contact_loss_j, energy.residual_j, energy.contacts_conserve);
     let parts = [
-        ("stored in contacts", energy.contacts_stored_j),
         ("work of the loads", energy.load_work_j),
         ("lost to modal damping", energy.modal_damping_j),
         ("lost in contacts", lost_j),
@@ -130,7 +129,7 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
         let why = "they are differences of larger energies, as where a load nearly meets an undamped frequency";
         ["rounding".to_owned(), format!("up to {:.0e} J in each of these: {why}", energy.rounding_j)]
     });
-    energy.bodies.iter().map(body).chain(parts.map(part)).chain([unaccounted]).chain(rounding).collect()
+    energy.bodies.iter().map(body).chain([stored]).chain(parts.map(part)).chain([unaccounted]).chain(rounding).collect()
 }
 
 /// The result of a run.
