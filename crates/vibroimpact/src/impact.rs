@@ -78,18 +78,23 @@ impl Impact {
         self.solver()?.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
-    /// As [`Impact::solve`], with cached tables. The motion is returned, too, if the cache is of one scene alone.
-    pub(crate) fn solve_with(&self, kept: &mut Kept) -> Result<(Solution, Option<Recording>), InvalidInput> {
+    /// As [`Impact::solve`], with cached tables.
+    pub(crate) fn solve_with(&self, kept: &mut Kept) -> Result<Solution, InvalidInput> {
         let Impact { striker, law, start, settings, .. } = self;
+        let settings = Settings { concurrent: kept.is_alone(), ..*settings };
+        self.solver_with(kept)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)
+    }
+
+    /// The same, with the motion if the cache is of one scene alone.
+    pub(crate) fn keep_with(&self, kept: &mut Kept) -> Result<(Solution, Option<Recording>), InvalidInput> {
         if !kept.is_alone() {
-            let solver = self.solver_with(kept)?;
-            return Ok((solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?, None));
+            return Ok((self.solve_with(kept)?, None));
         }
-        let recording = self.keep_with(settings, kept)?;
+        let recording = self.recording(&self.settings, kept)?;
         Ok((recording.solution().clone(), Some(recording)))
     }
 
-    fn keep_with(&self, settings: &Settings, kept: &mut Kept) -> Result<Recording, InvalidInput> {
+    fn recording(&self, settings: &Settings, kept: &mut Kept) -> Result<Recording, InvalidInput> {
         let settings = Settings { concurrent: kept.is_alone(), ..*settings };
         let solver = self.solver_with(kept)?;
         solver.solve_and_keep(&self.striker, &self.law, self.start.as_ref(), &settings).map_err(in_scene)
@@ -100,7 +105,7 @@ impl Impact {
     pub(crate) fn record_with(&self, kept: &mut Kept) -> Result<(Solution, History<Law>), InvalidInput> {
         let recording = match kept.motion_on(&self.structure) {
             Some(recording) => recording,
-            None => self.keep_with(&Settings { estimate_uncertainty: false, ..self.settings }, kept)?,
+            None => self.recording(&Settings { estimate_uncertainty: false, ..self.settings }, kept)?,
         };
         let counts = recording.counts();
         let (solution, history) = recording.history(self.law);

@@ -1,7 +1,7 @@
 //! An impact with another number of modes.
 
 use vibroimpact_sim::dropped_rod;
-use vibroimpact_sim::modal::{Recording, Solution};
+use vibroimpact_sim::modal::Solution;
 
 use super::guess::guess;
 use super::pose::Pose;
@@ -9,15 +9,11 @@ use super::{Cost, Kept, Model, Modes};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene, Structure, modal_only};
 
-/// Solves an impact, with its motion if motions are kept, and adds its cost.
-pub(super) fn solve(
-    impact: &Impact,
-    kept: &mut Kept,
-    cost: &mut Cost,
-) -> Result<(Solution, Option<Recording>), InvalidInput> {
-    let solved = impact.solve_with(kept)?;
-    cost.add(&solved.0.counts, impact.structure.modes.len());
-    Ok(solved)
+/// Solves an impact and adds its cost.
+pub(super) fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, InvalidInput> {
+    let solution = impact.solve_with(kept)?;
+    cost.add(&solution.counts, impact.structure.modes.len());
+    Ok(solution)
 }
 
 /// The expected number of modes for a tolerance, if it is known.

@@ -199,7 +199,7 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
         small(pose.tolerance)
     );
     let (structure, remainder_modes) = pose.structure((second / PILOT_PART).max(PILOT_FEWEST), cost)?;
-    let tried = pose.impact(structure, remainder_modes, pilot()).solve_with(pose.kept)?.0;
+    let tried = pose.impact(structure, remainder_modes, pilot()).solve_with(pose.kept)?;
     let range = if tried.sub_impacts.len() > 1 { SEVERAL } else { ONE_CONTACT };
     Ok(Estimate::of_solves(vec![first, second], tried.counts.steps(), pose.tolerance, range, reason))
 }

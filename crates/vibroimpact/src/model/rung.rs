@@ -34,7 +34,7 @@ pub(super) struct Rung {
     pub count: usize,
     pub impact: Impact,
     pub solution: Solution,
-    /// Its motion, if motions are kept and no later number was tried.
+    /// Its motion, if motions are kept and it may be the last.
     pub recording: Option<Recording>,
     /// Frequency of the last mode relative to the contact, `R(N)` (`guess.rs`).
     pub resolution: f64,
@@ -70,6 +70,13 @@ impl Posed {
         Ok(Posed { count, impact: pose.impact(structure, remainder_modes, settings), resolution })
     }
 
+    /// Solved, with its motion if motions are kept.
+    fn kept(self, pose: &mut Pose, cost: &mut Cost) -> Result<Rung, InvalidInput> {
+        let (solution, recording) = self.impact.keep_with(pose.kept)?;
+        cost.add(&solution.counts, self.impact.structure.modes.len());
+        Ok(self.solved(solution, recording))
+    }
+
     fn solved(self, solution: Solution, recording: Option<Recording>) -> Rung {
         let Posed { count, impact, resolution } = self;
         let energy = energy_of_remainder(&impact, &solution) * too_short(resolution);
@@ -78,10 +85,16 @@ impl Posed {
 }
 
 impl Rung {
+    /// One that may be the last.
     pub fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
+        Posed::new(pose, count, settings, cost)?.kept(pose, cost)
+    }
+
+    /// One to compare with the last.
+    pub fn beside(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let posed = Posed::new(pose, count, settings, cost)?;
-        let (solution, recording) = solve(&posed.impact, pose.kept, cost)?;
-        Ok(posed.solved(solution, recording))
+        let solution = solve(&posed.impact, pose.kept, cost)?;
+        Ok(posed.solved(solution, None))
     }
 
     /// One with this number of modes and, if impacts are solved at the same time, the one with fewer modes that it will most likely
@@ -98,10 +111,9 @@ impl Rung {
         let posed = Posed::new(pose, count, settings, cost)?;
         let before = Posed::new(pose, fewer(count), settings, cost).ok();
         let solve_before = || before.as_ref()?.impact.solve().ok();
-        let (of_before, solved) = both(before.is_some(), solve_before, || solve(&posed.impact, pose.kept, cost));
-        let (solution, recording) = solved?;
+        let (of_before, rung) = both(before.is_some(), solve_before, || posed.kept(pose, cost));
         let before = before.zip(of_before).map(|(before, solution)| before.solved(solution, None));
-        Ok((posed.solved(solution, recording), before))
+        Ok((rung?, before))
     }
 
     /// Solves the impact with other remainder modes and, if it is wanted, with a looser tolerance.
@@ -109,7 +121,7 @@ impl Rung {
         let listed = matches!(pose.source, Source::Listed { .. });
         let wanted = pose.scene.residual_compliance != Some(false);
         let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
-        let mut changed = |other: Impact| Ok::<_, InvalidInput>(Some(solve(&other, pose.kept, cost)?.0));
+        let mut changed = |other: Impact| Ok::<_, InvalidInput>(Some(solve(&other, pose.kept, cost)?));
         let mut unseen = Unseen::default();
         let Impact { structure, remainder_modes, settings, .. } = &self.impact;
         if with_solver {

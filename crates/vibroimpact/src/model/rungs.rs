@@ -30,14 +30,15 @@ pub(super) struct Rungs {
 }
 
 impl Rungs {
-    pub fn push(&mut self, next: Rung) {
-        let last = std::mem::replace(&mut self.last, next);
-        self.add_earlier(last);
+    /// The last is not the answer. Its motion, of every mode at every step, may take hundreds of megabytes, and is not needed while
+    /// the next one is solved.
+    pub fn forget_motion(&mut self) {
+        self.last.recording = None;
     }
 
-    /// Adds one before the last.
-    pub fn add_earlier(&mut self, rung: Rung) {
-        self.earlier.push(Rung { recording: None, ..rung });
+    pub fn push(&mut self, next: Rung) {
+        self.forget_motion();
+        self.earlier.push(std::mem::replace(&mut self.last, next));
     }
 
     /// All, the latest first.

@@ -66,6 +66,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         let count = rungs.last.count;
         if rungs.last.takes_too_many_steps() && (count > 1 || !rungs.earlier.is_empty()) {
             rungs.too_many = Some(count);
+            rungs.forget_motion();
             rungs.last = match rungs.earlier.pop() {
                 Some(before) => before,
                 None => Rung::new(pose, fewer(fewer(count)).max(1), settings(tolerance, tightened), cost)?,
@@ -82,15 +83,15 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
                     cost.add(&solved.solution.counts, solved.impact.structure.modes.len());
                     solved
                 }
-                None => Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?,
+                None => Rung::beside(pose, fewer(count), settings(tolerance, tightened), cost)?,
             };
-            rungs.add_earlier(before);
+            rungs.earlier.push(before);
         }
         if (is_plate || jumps) && rungs.near().count() == 2 && rungs.error() <= tolerance && !several_contacts {
             // the smallest of three
             let before = rungs.earlier.len() - 1;
-            let third = Rung::new(pose, fewer(rungs.earlier[before].count), settings(tolerance, tightened), cost)?;
-            rungs.earlier.insert(before, Rung { recording: None, ..third });
+            let third = Rung::beside(pose, fewer(rungs.earlier[before].count), settings(tolerance, tightened), cost)?;
+            rungs.earlier.insert(before, third);
         }
         if rungs.error() <= tolerance && rungs.last.unseen.is_none() {
             rungs.last.find_unseen(pose, several_contacts && rungs.share_tightest_tolerance(), cost)?;
@@ -119,12 +120,13 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             // the list is at its end, and the solver's error may be part of the change
             tightened += 1;
             if !rungs.is_complete() {
-                rungs.push(Rung::new(pose, fewer(most), settings(tolerance, tightened), cost)?);
+                rungs.push(Rung::beside(pose, fewer(most), settings(tolerance, tightened), cost)?);
             }
             most
         } else {
             return finish(pose, rungs, false, cost);
         };
+        rungs.forget_motion();
         rungs.push(Rung::new(pose, next, settings(tolerance, tightened), cost)?);
     }
 }

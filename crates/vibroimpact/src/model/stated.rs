@@ -71,12 +71,12 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
             let mut cost = Cost::default();
             (compare(scene, &mut Kept::default(), &impact, &mut cost), cost)
         };
-        let (beside, solved) = both(true, compare, || impact.solve_with(kept));
+        let (beside, solved) = both(true, compare, || impact.keep_with(kept));
         let (solution, recording) = solved?;
         kept.keep(&impact.structure, recording);
         (solution, Some(beside))
     } else {
-        (impact.solve_with(kept)?.0, None)
+        (impact.solve_with(kept)?, None)
     };
     cost.add(&solution.counts, impact.structure.modes.len());
     let modes = counted(impact.kept_modes() as u64, "mode", "modes");
@@ -260,7 +260,7 @@ fn compare_with(
             return Ok((Other::Itself, complete(impact)));
         }
         let other = Impact { settings, ..with_modes(scene, count, modes, kept)? };
-        let (solution, _) = solve(&other, kept, cost)?;
+        let solution = solve(&other, kept, cost)?;
         let energy = energy_of_remainder(&other, &solution);
         Ok((Other::Solved(Box::new(solution), energy), complete(&other)))
     };
@@ -288,7 +288,7 @@ fn compare_with(
     let softer = if uncertain_m_n > 0.0 {
         let other = with_modes(scene, count, more, kept)?;
         let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
-        let (solution, _) = solve(&Impact { structure, settings, ..other }, kept, cost)?;
+        let solution = solve(&Impact { structure, settings, ..other }, kept, cost)?;
         if let Some(reason) = solution.outcome.stopped_by() {
             return Ok(Err(not_compared(more, reason)));
         }

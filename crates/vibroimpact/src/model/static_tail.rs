@@ -78,8 +78,8 @@ impl StaticTail {
         let few = Impact { settings, ..with_modes(scene, count, modes, kept)? };
         let truncated_m_n = scene.structure.static_compliance_m_n(scene.place())? - compliance(&impact.structure.modes);
         let structure = without_tail(&few.structure, few.remainder_modes, truncated_m_n);
-        let (whole, _) = solve(&few, kept, cost)?;
-        let (without, _) = solve(&Impact { structure, ..few }, kept, cost)?;
+        let whole = solve(&few, kept, cost)?;
+        let without = solve(&Impact { structure, ..few }, kept, cost)?;
         let stopped = [&whole, &without].iter().any(|solution| solution.outcome.stopped_by().is_some());
         Ok((!stopped).then_some(StaticTail { whole, without }))
     }
