@@ -158,6 +158,23 @@ fn a_dashpot_does_not_need_all_modes() {
     assert!((found.restitution.unwrap() - reference(&scene)).abs() < 1e-3);
 }
 
+/// With every number of modes the surfaces part for other moments, most of them below a microsecond, while the striker is in contact
+/// for milliseconds. The restitution was computed with 900 modes to 1e-10.
+#[test]
+fn moments_of_flight_under_a_strong_dashpot_are_not_waited_for() {
+    let scene = json!({
+        "structure": { "kind": "beam", "ends": ["clamped", "clamped"], "damping_ratio": 0.01, "segments": [
+            { "length_m": 0.4, "youngs_modulus_pa": 7e10, "density_kg_m3": 2700, "width_m": 0.03, "thickness_m": 0.005 }
+        ] },
+        "striker": { "mass_kg": 0.2, "speed_m_s": 0.5 },
+        "contact": { "law": "kelvin-voigt", "stiffness_n_m": 2e6, "damping_n_s_m": 1e6 },
+        "location_m": 0.2, "tolerance": 5e-3
+    });
+    let found = answer(&scene);
+    assert!(found.settled && found.cost.mode_steps < 5_000_000, "{found:?}");
+    assert!((found.restitution.unwrap() - 0.760681).abs() < found.restitution_uncertainty.unwrap(), "{found:?}");
+}
+
 /// Where the force jumps at first touch, errors decrease as slowly as 1/N, while two or three changes may be small by accident: in
 /// the first scene between 4 and 6 modes, in the second between 105 and 209, in the third, after several contacts, between 11 and 16.
 #[test]

@@ -49,7 +49,7 @@ pub(super) struct Wall {
 
 impl Wall {
     /// From the work that equals the striker's energy: for `F ~ xi^n` it is `F xi / (1 + n)`.
-    fn new(law: &Law, striker: &Striker) -> Wall {
+    pub fn new(law: &Law, striker: &Striker) -> Wall {
         let energy = 0.5 * striker.mass_kg * striker.speed_m_s.powi(2);
         let branch = law.touch(&Memory::default(), striker.speed_m_s.max(0.0));
         let at = |xi: f64| {

@@ -1,7 +1,8 @@
 //! The quantities of an impact whose uncertainty is estimated from other impacts, and their changes.
 
-use vibroimpact_sim::modal::{Outcome, Solution, SubImpact};
+use vibroimpact_sim::modal::{Outcome, Solution, Striker, SubImpact};
 
+use super::pose::Wall;
 use crate::impact::Impact;
 
 /// Weight of a change of the motion behind a quantity.
@@ -22,6 +23,9 @@ pub(super) enum Quantity<'a> {
         from: f64,
         /// `g/v`: its change per time in a fall (1/s); otherwise 0.
         per_time: f64,
+        /// The time in which the striker would cross the largest compression on an immovable surface at the speed of approach (s), about
+        /// a third of the duration of that contact. A flight that is shorter counts by its share of this time.
+        crossing_s: f64,
     },
     /// The largest force of number `i` of these intervals of contact (N).
     PeakForce { of: &'a [SubImpact], i: usize },
@@ -34,7 +38,9 @@ pub(super) struct Change {
     pub itself: f64,
     /// Of the motion behind it, because two solutions may agree in one number by accident. For a restitution, of the speed of a
     /// flight between two contacts, relative to the rigid-body motion of the structure and as a share of the speed of impact: of the
-    /// restitution that the impact would have if it ended there. For a force, of the impulse of the same contact, as a share of it
+    /// restitution that the impact would have if it ended there. A flight that is short compared with a contact counts less. Under a
+    /// strong dashpot the surfaces part for a moment with every wave of the fast modes, which differs from one number of modes to the
+    /// next; what it changes in the motion shows in the longer flights. For a force, of the impulse of the same contact, as a share of it
     /// that is taken of the force.
     pub motion: f64,
 }
@@ -52,7 +58,9 @@ impl Quantity<'_> {
         let speed = impact.approach_m_s();
         let per_impulse = impact.structure.mobility_per_kg(&impact.striker) / speed;
         let from = if impact.gravity_m_s2 > 0.0 { impact.striker.speed_m_s / speed } else { 1.0 };
-        Quantity::Restitution { per_impulse, from, per_time: impact.gravity_m_s2 / speed }
+        let striker = Striker { mass_kg: (per_impulse * speed).recip(), speed_m_s: speed };
+        let crossing_s = Wall::new(&impact.law, &striker).compression_m / speed;
+        Quantity::Restitution { per_impulse, from, per_time: impact.gravity_m_s2 / speed, crossing_s }
     }
 
     /// Its value in a solution.
@@ -90,12 +98,16 @@ impl Quantity<'_> {
                 let [a, b] = [a, b].map(|solution| solution.highest_flight.max(0.0).sqrt());
                 (a - b).abs()
             }
-            Quantity::Restitution { per_impulse, from, per_time } if per_impulse > 0.0 && per_impulse.is_finite() => {
+            Quantity::Restitution { per_impulse, from, per_time, crossing_s }
+                if per_impulse > 0.0 && per_impulse.is_finite() =>
+            {
                 let of = |solution: &Solution| flights(solution, per_impulse, from, per_time);
                 let (of_a, of_b) = (of(a), of(b));
                 if per_time > 0.0 && turn_differs(&touches(a, &of_a, per_time), &touches(b, &of_b, per_time)) {
                     itself = unknown;
                 }
+                let [of_a, of_b] =
+                    [(a, of_a), (b, of_b)].map(|(solution, flights)| weighted(solution, flights, crossing_s));
                 distance(&of_a, &of_b)
             }
             Quantity::Restitution { .. } => 0.0,
@@ -153,10 +165,22 @@ fn turn_differs(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).any(differs)
 }
 
-/// Largest difference between the flights of one impact and the nearest ones of another.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let nearest = |x: &f64, of: &[f64]| of.iter().map(|y| (x - y).abs()).fold(f64::INFINITY, f64::min);
-    let directed = |of: &[f64], to: &[f64]| of.iter().map(|x| nearest(x, to)).fold(0.0, f64::max);
+/// Each flight with its weight: its duration as a share of this time, at most 1. The last flight has no end.
+fn weighted(solution: &Solution, flights: Vec<f64>, crossing_s: f64) -> Vec<(f64, f64)> {
+    let contacts = &solution.sub_impacts;
+    let weight = |i: usize| match contacts.get(i + 1) {
+        Some(next) if next.start_s - contacts[i].end_s < crossing_s => (next.start_s - contacts[i].end_s) / crossing_s,
+        _ => 1.0,
+    };
+    flights.into_iter().enumerate().map(|(i, flight)| (flight, weight(i))).collect()
+}
+
+/// Largest weighted difference between the flights of one impact and the nearest ones of another.
+fn distance(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
+    let nearest = |x: f64, of: &[(f64, f64)]| of.iter().map(|(y, _)| (x - y).abs()).fold(f64::INFINITY, f64::min);
+    let directed = |of: &[(f64, f64)], to: &[(f64, f64)]| {
+        of.iter().map(|(x, weight)| weight * nearest(*x, to)).fold(0.0, f64::max)
+    };
     if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
@@ -166,11 +190,13 @@ mod tests {
 
     #[test]
     fn impacts_are_as_far_apart_as_their_flights() {
+        let long = |flights: &[f64]| flights.iter().map(|flight| (*flight, 1.0)).collect::<Vec<_>>();
         assert_eq!(distance(&[], &[]), 0.0);
-        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.5]), 0.0);
+        assert_eq!(distance(&long(&[1.0, 1.5]), &long(&[1.0, 1.5])), 0.0);
         // a third contact that does not change the result
-        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
-        assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+        assert_eq!(distance(&long(&[1.0, 1.5]), &long(&[1.0, 1.25, 1.5])), 0.25);
+        assert_eq!(distance(&long(&[1.0, 1.5]), &[(1.0, 1.0), (1.25, 0.1), (1.5, 1.0)]), 0.025);
+        assert_eq!(distance(&long(&[1.0]), &[]), f64::INFINITY);
     }
 
     #[test]
@@ -203,7 +229,7 @@ mod tests {
             }
             let impact = crate::Scene::from_value(&scene).unwrap().impact().unwrap();
             let solution = impact.solve().unwrap();
-            let Quantity::Restitution { per_impulse, from, per_time } = Quantity::restitution(&impact) else {
+            let Quantity::Restitution { per_impulse, from, per_time, .. } = Quantity::restitution(&impact) else {
                 unreachable!()
             };
             let last = flights(&solution, per_impulse, from, per_time).pop().unwrap();

@@ -5,9 +5,9 @@
 //! the same impact with fewer modes, or the one solved before, shows the effect of the last modes.
 //!
 //! Restitutions may agree by accident while the histories of two impacts do not, and then differ again at the next number. The
-//! striker's speed in every flight between two contacts is therefore compared as well, and after more than one contact a third
-//! number of modes is required. So it is for plates, most of whose modes hardly move a given location: the modes between two numbers
-//! may be such modes. And so it is where the force jumps at first touch: changes then decrease slowly, and vary by accident
+//! striker's speed in every flight between two contacts is therefore compared as well (`quantity.rs`), and after more than one contact a
+//! third number of modes is required. So it is for plates, most of whose modes hardly move a given location: the modes between two
+//! numbers may be such modes. And so it is where the force jumps at first touch: changes then decrease slowly, and vary by accident
 //! (`left_out.rs`).
 //!
 //! In a fall, impacts may also agree by accident that a touch comes before or after the striker turns round (`quantity.rs`).

@@ -40,7 +40,7 @@ const RICHER: usize = 2;
 const SHARE: f64 = 0.5;
 
 /// The restitution itself, without the motion behind it.
-const RESTITUTION: Quantity = Quantity::Restitution { per_impulse: 0.0, from: 1.0, per_time: 0.0 };
+const RESTITUTION: Quantity = Quantity::Restitution { per_impulse: 0.0, from: 1.0, per_time: 0.0, crossing_s: 0.0 };
 
 /// The impacts on the beams of one scene that are solved so far, so that the choice of the theory and its uncertainty do not solve an
 /// impact twice.
