@@ -3,7 +3,7 @@
 use crate::dense::Dense;
 use crate::problem::{Direction, Event, Volterra};
 use crate::solution::{Counts, EventHit, Solution, Stop};
-use crate::system::System;
+use crate::system::{Fault, Segment, System};
 
 /// The solution so far and the last sign of each event function.
 pub(crate) struct Recorder<'p, 'a> {
@@ -17,6 +17,23 @@ pub(crate) struct Recorder<'p, 'a> {
 impl<'p, 'a> Recorder<'p, 'a> {
     pub fn new(problem: &'p Volterra<'a>, dense: Dense) -> Self {
         Recorder { problem, dense, last: vec![None; problem.events.len()], hits: Vec::new() }
+    }
+
+    /// The solution just after the start of a segment. The integrals are continuous, so this is the forcing at first, and later
+    /// the last value plus the jump of the forcing.
+    pub fn start_value(&self, system: &mut System<'_, '_>, segment: &Segment) -> Result<Vec<f64>, Fault> {
+        let mut value = vec![0.0; system.unknowns];
+        system.forcing(segment.inside(segment.start), &mut value)?;
+        if segment.start > 0.0 {
+            let mut before = vec![0.0; system.unknowns];
+            system.forcing(segment.before(), &mut before)?;
+            let values = self.dense.values();
+            let last = &values[values.len() - before.len()..];
+            for ((v, b), y) in value.iter_mut().zip(&before).zip(last) {
+                *v = y + (*v - b);
+            }
+        }
+        Ok(value)
     }
 
     /// Evaluates the event functions at the given times, ascending, all inside the solution so far. An error is the reason to

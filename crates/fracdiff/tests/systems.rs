@@ -144,3 +144,16 @@ fn terms_of_one_pair_add_up() {
     assert!((solve(vec![term(-1.0)]) - solve(vec![term(-0.5), term(-0.5)])).abs() < 1e-15);
     assert!((solve(vec![]) - 1.0).abs() < 1e-15);
 }
+
+/// The integrals are continuous, also where a kernel of low order is all but infinite.
+#[test]
+fn a_break_without_a_jump_leaves_no_jump() {
+    for order in [0.1, 0.5] {
+        let problem = Volterra::scalar(|_| 1.0, |_, y| y, &[(order, -1.0 / tgamma(order))]).with_breaks(&[1.0]);
+        for method in every_method(400) {
+            let solution = problem.solve(&method, 2.0).unwrap();
+            let [before, after] = [1.0, 1.0 + 1e-12].map(|t| solution.at(t).unwrap()[0]);
+            assert!((after - before).abs() < 1e-8, "{method} {order}: {before} {after}");
+        }
+    }
+}

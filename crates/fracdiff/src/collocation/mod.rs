@@ -147,7 +147,7 @@ impl March<'_, '_, '_> {
         let mut length = self.settings.first_panel.unwrap_or(1e-3 * segment.length()).min(longest);
         // Distance of the current panel's start from the start of the segment.
         let mut reached = 0.0;
-        let start = self.start_value(&segment)?;
+        let start = self.recorder.start_value(&mut self.system, &segment)?;
         let mut guess = start.clone();
         // The last fault met. If it lies ahead, it is more informative than the reason why the shortest panel failed.
         let mut fault: Option<Fault> = None;
@@ -188,23 +188,6 @@ impl March<'_, '_, '_> {
             }
         }
         Ok(())
-    }
-
-    /// The solution just after the start of a segment. The integrals are continuous, so this is the forcing at first, and later
-    /// the last value plus the jump of the forcing.
-    fn start_value(&mut self, segment: &Segment) -> Result<Vec<f64>, Stop> {
-        let mut value = vec![0.0; self.system.unknowns];
-        self.system.forcing(segment.inside(segment.start), &mut value)?;
-        if segment.start > 0.0 {
-            let mut before = vec![0.0; self.system.unknowns];
-            self.system.forcing(segment.before(), &mut before)?;
-            let values = self.recorder.dense.values();
-            let last = &values[values.len() - before.len()..];
-            for ((v, b), y) in value.iter_mut().zip(&before).zip(last) {
-                *v = y + (*v - b);
-            }
-        }
-        Ok(value)
     }
 
     /// Solves a panel; on success it returns the factor by which the next may be longer.

@@ -99,11 +99,11 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
         Ok(t)
     }
 
-    /// Point 0 is explicit; the points that corrections act on are solved together.
+    /// Point 0 is known; the points that corrections act on are solved together.
     fn start(&mut self) -> Result<(), Stop> {
         let (d, m) = (self.system.unknowns, self.system.densities);
-        let mut y = vec![0.0; d];
-        let t = self.outside(0, &mut y)?;
+        let y = self.recorder.start_value(self.system, &self.segment)?;
+        let t = self.segment.inside(self.segment.start);
         let mut f0 = vec![0.0; m];
         self.system.density(t, &y, &mut f0)?;
         self.f.extend_from_slice(&f0);
