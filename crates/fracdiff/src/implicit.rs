@@ -41,8 +41,7 @@ pub(crate) fn solve(system: &mut System<'_, '_>, block: &Block<'_>, stage: &mut 
             return Err(Fault::NoConvergence { t: at });
         }
         residual = damped_step(system, block, stage, &step, residual.amax())?;
-        let scale = stage.y.iter().chain(block.rhs).fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
-        let size = step.amax() / scale;
+        let size = relative(step.as_slice(), [&stage.y, block.rhs], system.unknowns);
         // The first step contains no information about the contraction.
         let rate = previous.map_or(1.0, |before| size / before);
         // The errors of the differenced Jacobian are about 1e-8, so no faster contraction is assumed.
@@ -50,8 +49,9 @@ pub(crate) fn solve(system: &mut System<'_, '_>, block: &Block<'_>, stage: &mut 
         if remaining <= 4.0 * f64::EPSILON {
             return Ok(());
         }
-        // Rounding of the residual may keep the last step above the bound; the step then no longer decreases.
-        if previous.is_some() && size <= 1e-12 && rate >= 0.5 {
+        // Rounding of the residual may keep the last step above the bound; the step then no longer decreases. An unknown may consist of
+        // nothing but the rounding of others, so that the largest of all is the measure here.
+        if previous.is_some() && rate >= 0.5 && step.amax() <= 1e-12 * magnitude(&stage.y).max(magnitude(block.rhs)) {
             return Ok(());
         }
         if previous.is_some() && rate > 0.1 {
@@ -90,6 +90,33 @@ fn damped_step(
     outcome.map(|()| residual_of(system, block, stage))
 }
 
+fn magnitude(values: &[f64]) -> f64 {
+    values.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()))
+}
+
+/// The largest magnitude of one of the unknowns at several points.
+fn largest(values: &[f64], unknown: usize, unknowns: usize) -> f64 {
+    let (mut largest, mut i) = (0.0_f64, unknown);
+    while let Some(value) = values.get(i) {
+        largest = largest.max(value.abs());
+        i += unknowns;
+    }
+    largest
+}
+
+/// The largest step of an unknown relative to its own values, since unknowns may have different units, or to those of all if it is 0
+/// everywhere.
+fn relative(step: &[f64], values: [&[f64]; 2], unknowns: usize) -> f64 {
+    let mut size = 0.0_f64;
+    for unknown in 0..unknowns {
+        let [a, b] = values.map(|values| largest(values, unknown, unknowns));
+        let own = a.max(b);
+        let own = if own > 0.0 { own } else { magnitude(values[0]).max(magnitude(values[1])) };
+        size = size.max(largest(step, unknown, unknowns) / own);
+    }
+    size
+}
+
 fn densities(system: &mut System<'_, '_>, times: &[f64], y: &[f64], f: &mut [f64]) -> Result<(), Fault> {
     let (d, m) = (system.unknowns, system.densities);
     for (i, &t) in times.iter().enumerate() {
@@ -114,12 +141,16 @@ fn residual_of(system: &System<'_, '_>, block: &Block<'_>, stage: &Stage) -> DVe
 fn newton_matrix(system: &mut System<'_, '_>, block: &Block<'_>, stage: &Stage) -> Result<DMatrix<f64>, Fault> {
     let (d, m, points) = (system.unknowns, system.densities, block.times.len());
     let mut matrix = DMatrix::identity(points * d, points * d);
-    let typical = stage.y.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    let of_all = magnitude(&stage.y);
     let mut shifted = vec![0.0; d];
     let mut moved = vec![0.0; m];
-    for j in 0..points {
-        let (y, f) = (&stage.y[j * d..(j + 1) * d], &stage.f[j * m..(j + 1) * m]);
-        for c in 0..d {
+    for c in 0..d {
+        // Relative to the unknown itself a density could not see the step in a difference from a larger unknown, and relative to the
+        // larger one the step would not be small. The mean is as far from either.
+        let own = largest(&stage.y, c, d);
+        let typical = if own > 0.0 { own.sqrt() * of_all.sqrt() } else { of_all };
+        for j in 0..points {
+            let (y, f) = (&stage.y[j * d..(j + 1) * d], &stage.f[j * m..(j + 1) * m]);
             shifted.copy_from_slice(y);
             let h = f64::EPSILON.sqrt() * y[c].abs().max(1e-3 * typical).max(1e-100);
             shifted[c] = y[c] + h;

@@ -145,6 +145,32 @@ fn terms_of_one_pair_add_up() {
     assert!((solve(vec![]) - 1.0).abs() < 1e-15);
 }
 
+/// Each unknown is computed to its own size, whatever the size of the others: their units may differ.
+#[test]
+fn a_small_unknown_is_as_accurate_as_a_large_one() {
+    let alone = test_problems::rigid_contact().volterra;
+    let own = |of: usize| Term { unknown: of, density: of, order: 2.0, coefficient: -1.0 };
+    for (large, small) in [(1.0, 1e-6), (1e6, 1.0), (1e6, 1e-6)] {
+        let both = Volterra {
+            unknowns: 2,
+            densities: 2,
+            terms: vec![own(0), own(1)],
+            forcing: Box::new(move |t, g| g.copy_from_slice(&[large, small * t])),
+            density: Box::new(move |_, y, f| f.copy_from_slice(&[y[0], small * (y[1] / small).max(0.0).powf(1.5)])),
+            breaks: Vec::new(),
+            events: Vec::new(),
+        };
+        for method in every_method(200) {
+            let [one, two] = [&alone, &both].map(|problem| problem.solve(&method, 3.0).unwrap());
+            for i in 1..=30 {
+                let t = 0.1 * f64::from(i);
+                let difference = one.at(t).unwrap()[0] - two.at(t).unwrap()[1] / small;
+                assert!(difference.abs() < 1e-12, "{method} {large} {small} {t}: {difference:e}");
+            }
+        }
+    }
+}
+
 /// The integrals are continuous, also where a kernel of low order is all but infinite.
 #[test]
 fn a_break_without_a_jump_leaves_no_jump() {
