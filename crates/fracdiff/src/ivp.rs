@@ -3,6 +3,7 @@
 use crate::method::Method;
 use crate::problem::{Density, Event, Term, Volterra};
 use crate::solution::Solution;
+use crate::system::SMALLEST_ORDER;
 use invalid_input::InvalidInput;
 use libm::tgamma;
 use std::fmt;
@@ -133,7 +134,9 @@ impl<'a> InitialValueProblem<'a> {
             if !equation.lower.is_empty() {
                 let lower = equation.lower.iter();
                 let density = d + copied.len();
-                terms.extend(lower.map(|&(a, b)| Term::riemann_liouville(i, density, equation.order - b, -a)));
+                // The difference of two allowed orders may be too small by its rounding.
+                let raised = |lower: f64| (equation.order - lower).max(SMALLEST_ORDER);
+                terms.extend(lower.map(|&(a, b)| Term::riemann_liouville(i, density, raised(b), -a)));
                 copied.push(i);
             }
         }

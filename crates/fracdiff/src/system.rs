@@ -7,6 +7,9 @@ use invalid_input::InvalidInput;
 /// Largest number of unknowns or densities. It limits memory and is far above what the dense Newton systems can solve.
 const MOST_COMPONENTS: usize = 2000;
 
+/// Smallest order of a term.
+pub(crate) const SMALLEST_ORDER: f64 = 0.01;
+
 /// All terms of one (unknown, density) pair: the kernel `sum of coefficient * t^(orders[index] - 1)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
@@ -103,7 +106,7 @@ impl<'p, 'a> System<'p, 'a> {
             InvalidInput::unless(u < problem.unknowns, field("unknown"), u, "less than the number of unknowns")?;
             InvalidInput::unless(d < problem.densities, field("density"), d, "less than the number of densities")?;
             InvalidInput::require_finite(field("coefficient"), term.coefficient)?;
-            let in_range = term.order >= 0.01 && term.order <= 16.0;
+            let in_range = term.order >= SMALLEST_ORDER && term.order <= 16.0;
             InvalidInput::unless(in_range, field("order"), term.order, "a number from 0.01 to 16")?;
             let index = orders.iter().position(|&o| o == term.order).unwrap_or_else(|| {
                 orders.push(term.order);

@@ -61,6 +61,11 @@ fn bad_settings_are_refused() {
     let galerkin = GalerkinStates::default();
     assert_eq!(solve(Method::GalerkinStates(GalerkinStates { states: 1, ..galerkin.clone() })), "states");
     assert_eq!(solve(Method::GalerkinStates(GalerkinStates { beta2: -3.0, ..galerkin })), "beta2");
+    for order in [0.96, 1.99, 2.01] {
+        let method = Method::GalerkinStates(GalerkinStates::default());
+        let problem = Volterra::scalar(|_| 1.0, |_, y| y, &[(2.0, -1.0), (order, -1.0)]);
+        assert_eq!(field(problem.solve(&method, 1.0)), "terms[1].order");
+    }
     let collocation = Collocation::default();
     for (name, settings) in [
         ("tolerance", Collocation { tolerance: f64::NAN, ..collocation.clone() }),
@@ -86,6 +91,17 @@ fn bad_initial_value_problems_are_refused() {
     assert_eq!(refuse(Equation::new(0.5, &[f64::NAN])), "equations[0].initial[0]");
     assert_eq!(refuse(Equation::new(0.5, &[1.0]).plus(1.0, 0.5)), "equations[0].lower[0].1");
     assert_eq!(refuse(Equation::new(0.5, &[1.0]).plus(f64::NAN, 0.2)), "equations[0].lower[0].0");
+}
+
+/// `3 - 2.99` is below 0.01 by its rounding.
+#[test]
+fn the_highest_lower_order_that_is_allowed_is_solved() {
+    for (order, lower) in [(3.0, 2.99), (16.0, 15.99), (1.0, 0.99)] {
+        let equation = Equation::new(order, &[1.0; 16][..order as usize]).plus(1.0, lower);
+        let problem = InitialValueProblem::new(vec![equation], |_, y, f| f[0] = -y[0]);
+        let solution = problem.solve(&Method::SumOfExponentials(SumOfExponentials::default()), 1.0).unwrap();
+        assert_eq!(solution.stop, Stop::EndReached, "{order} {lower}");
+    }
 }
 
 #[test]

@@ -11,6 +11,9 @@ use invalid_input::InvalidInput;
 use libm::tgamma;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
+/// Orders for which the recipe is computed.
+pub(super) const ALPHA: std::ops::RangeInclusive<f64> = 0.05..=0.95;
+
 /// The matrices of `A da/dt + B a = c d^n x/dt^n`, `D^alpha x = c^T a` (thesis Eq. A.1), `n - 1 < alpha < n`.
 ///
 /// ```
@@ -40,7 +43,7 @@ impl DasChatterjee {
     ///
     /// [`InvalidInput`] unless `0.05 <= alpha <= 0.95`, `3 <= states <= 500`, `-12 <= beta1 < beta2 <= 12`.
     pub fn new(alpha: f64, states: usize, beta1: f64, beta2: f64) -> Result<DasChatterjee, InvalidInput> {
-        InvalidInput::unless((0.05..=0.95).contains(&alpha), "alpha", alpha, "a number from 0.05 to 0.95")?;
+        InvalidInput::unless(ALPHA.contains(&alpha), "alpha", alpha, "a number from 0.05 to 0.95")?;
         InvalidInput::unless((3..=500).contains(&states), "states", states, "a number from 3 to 500")?;
         InvalidInput::unless((-12.0..=12.0).contains(&beta1), "beta1", beta1, "a number from -12 to 12")?;
         let beta2_ok = beta2 > beta1 && beta2 <= 12.0;

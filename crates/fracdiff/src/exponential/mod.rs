@@ -10,6 +10,7 @@ pub use sum::ExponentialSum;
 use crate::problem::Volterra;
 use crate::solution::Solution;
 use crate::system::{System, require_steps};
+use das_chatterjee::ALPHA;
 use invalid_input::InvalidInput;
 use march::{Kernel, Mesh};
 
@@ -95,6 +96,10 @@ impl GalerkinStates {
                 if fraction == 1.0 {
                     return Ok(Kernel { order, whole, sum: constant(), local_exact: false });
                 }
+                // The recipe knows nothing of the terms.
+                let term = problem.terms.iter().position(|term| term.order == order).unwrap_or_default();
+                let allowed = "an integer, or a number with a fractional part from 0.05 to 0.95, for Galerkin states";
+                InvalidInput::unless(ALPHA.contains(&(1.0 - fraction)), ("terms", term, "order"), order, allowed)?;
                 let recipe = DasChatterjee::new(1.0 - fraction, self.states, self.beta1, self.beta2)?;
                 let mut sum = recipe.kernel().ok_or_else(|| {
                     InvalidInput::new(
