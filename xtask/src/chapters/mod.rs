@@ -117,6 +117,8 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         );
         return Err(BadInput(fault).into());
     }
+    // the user's file is checked before anything is computed
+    let points = data.map(chapter8::points).transpose()?;
     let mut study = Study::new(out, quick)?.part_of_a_larger_one(part.of_the_thesis());
     let introduction = match part {
         Part::Chapter(2) => chapter2::run(&mut study)?,
@@ -127,7 +129,7 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         Part::Chapter(5) => chapter5::run(&mut study)?,
         Part::Chapter(6) => chapter6::run(&mut study)?,
         Part::Chapter(7) => chapter7::run(&mut study)?,
-        Part::Chapter(8) => chapter8::run(&mut study, data)?,
+        Part::Chapter(8) => chapter8::run(&mut study, points.as_deref())?,
         Part::Chapter(other) => return Err(unknown(&other.to_string()).into()),
     };
     finish(study, part.chapter(), &part.title(), introduction)

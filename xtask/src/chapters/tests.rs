@@ -232,6 +232,16 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
     assert!(run(Part::Chapter(7), &refused, true, Some(&points)).unwrap_err().to_string().contains("--data"));
 }
 
+/// The points belong to one of the last chapters, but their file is read first.
+#[test]
+fn all_chapters_wait_for_a_readable_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (points, out) = (folder.path().join("points.csv"), folder.path().join("out"));
+    let message = run_all(&out, true, Some(&points)).unwrap_err().to_string();
+    assert!(message.starts_with("cannot read ") && message.contains("points.csv"), "{message}");
+    assert!(!out.exists());
+}
+
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +252,9 @@ fn other_chapters_and_unwritable_folders_are_errors() {
     );
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    assert!(run(Part::Chapter(3), &file.join("below"), true, None).is_err());
+    let below = file.join("below");
+    let message = run(Part::Chapter(3), &below, true, None).unwrap_err().to_string();
+    assert!(message.contains(&below.display().to_string()), "{message}");
 }
 
 #[test]

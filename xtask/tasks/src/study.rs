@@ -71,14 +71,18 @@ pub fn targets(report: &mut Report, stated: &[Comparison]) -> String {
 }
 
 impl<S> Study<S> {
-    /// Begins a study that will write into `out`. The manifest of an earlier run is removed, so that a folder with a manifest is
-    /// always complete.
+    /// Begins a study that will write into `out`, which is created now, since a folder that cannot be written would otherwise show only
+    /// after the computation. The manifest of an earlier run is removed, so that a folder with a manifest is always complete.
     ///
     /// # Errors
-    /// If that manifest cannot be removed.
+    /// If the folder cannot be created, or that manifest cannot be removed.
     pub fn new(out: &Path, quick: bool) -> Result<Study<S>, Failure> {
-        match std::fs::remove_file(out.join(MANIFEST)) {
-            Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => return Err(failure.into()),
+        std::fs::create_dir_all(out).map_err(|failure| unwritten(out, &failure))?;
+        let manifest = out.join(MANIFEST);
+        match std::fs::remove_file(&manifest) {
+            Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => {
+                return Err(unwritten(&manifest, &failure));
+            }
             _ => {}
         }
         Ok(Study {
@@ -239,7 +243,8 @@ impl<S> Study<S> {
     }
 
     fn file(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        write_whole(&self.out.join(name), bytes)?;
+        let path = self.out.join(name);
+        write_whole(&path, bytes).map_err(|failure| unwritten(&path, &failure))?;
         self.files.push(name.into());
         Ok(())
     }
@@ -270,7 +275,7 @@ impl<S> Study<S> {
         }
         let told = tell(&mut report, &self.stated);
         report.append(self.body.clone());
-        for path in report.write(&self.out)? {
+        for path in report.write(&self.out).map_err(|failure| unwritten(&self.out, &failure))? {
             let name = path.strip_prefix(&self.out).unwrap_or(&path);
             self.files.push(name.to_string_lossy().replace('\\', "/"));
         }
@@ -289,6 +294,11 @@ impl<S> Study<S> {
         );
         Ok(Finished { title: title.to_owned(), stated: self.stated, shown: self.shown, impacts, summary })
     }
+}
+
+/// An error of the operating system says what is wrong, but not with which file.
+fn unwritten(path: &Path, failure: &std::io::Error) -> Failure {
+    format!("cannot write {}: {failure}", path.display()).into()
 }
 
 #[cfg(test)]

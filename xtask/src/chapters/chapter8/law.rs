@@ -17,7 +17,7 @@ use vibroimpact_sim::dropped_rod::DroppedRod;
 
 /// A restitution to which the law is fitted.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(in crate::chapters) struct Point {
     pub length_m: f64,
     pub angle_deg: f64,
     pub restitution: f64,

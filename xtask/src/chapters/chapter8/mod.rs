@@ -9,6 +9,7 @@ mod two_rods;
 mod upright;
 
 use super::study::Study;
+use law::Point;
 use parameters::Parameters;
 use std::path::Path;
 use tasks::{BadInput, Failure};
@@ -21,18 +22,21 @@ friction, gravity during the contact, and contact of the other end, which matter
 algebraic law is fitted to these drops. `cargo xtask reproduce-chapter 8 --data points.csv` (columns length_m, \
 angle_deg, restitution) fits and plots points that were read off the published figure.";
 
+/// Reads measured points from the user's file.
+pub(super) fn points(path: &Path) -> Result<Vec<Point>, Failure> {
+    measured::read(path).map_err(|fault| BadInput(fault.to_string()).into())
+}
+
 /// Runs the chapter and returns the text that introduces its report.
-pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str, Failure> {
+pub(super) fn run(study: &mut Study, points: Option<&[Point]>) -> Result<&'static str, Failure> {
     let parameters = Parameters::load()?;
-    // the user's file is checked before anything is computed
-    let points = data.map(measured::read).transpose().map_err(|fault| BadInput(fault.to_string()))?;
     let drops = drops::run(study, &parameters)?;
     upright::run(study, &parameters)?;
     two_rods::run(study, &parameters)?;
     law::run(study, &parameters, &drops)?;
     measurements::run(study, &parameters, &drops)?;
     if let Some(points) = points {
-        measured::run(study, &parameters, &points)?;
+        measured::run(study, &parameters, points)?;
     }
     Ok(INTRODUCTION)
 }
