@@ -96,12 +96,7 @@ fn magnitude(values: &[f64]) -> f64 {
 
 /// The largest magnitude of one of the unknowns at several points.
 fn largest(values: &[f64], unknown: usize, unknowns: usize) -> f64 {
-    let (mut largest, mut i) = (0.0_f64, unknown);
-    while let Some(value) = values.get(i) {
-        largest = largest.max(value.abs());
-        i += unknowns;
-    }
-    largest
+    values.iter().skip(unknown).step_by(unknowns).fold(0.0, |a, v| a.max(v.abs()))
 }
 
 /// The largest step of an unknown relative to its own values, since unknowns may have different units, or to those of all if it is 0

@@ -171,7 +171,7 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Op
         _ if rungs.is_complete() => "they make up the whole static compliance".to_owned(),
         Some((change, [from, to])) => format!(
             "from {from} to {to} modes the restitution changes by {}, and the relative speed of a flight between contacts by at \
-             most {} of the speed of impact",
+             most {} of the speed of impact (short flights count less)",
             small(change.itself),
             small(change.motion)
         ),
