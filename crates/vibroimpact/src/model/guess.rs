@@ -38,7 +38,8 @@ use vibroimpact_sim::modal::{Mode, Striker};
 
 use super::Cost;
 use super::left_out::taken_by_dashpot;
-use super::pose::{Pose, Source, Wall};
+use super::pose::{Pose, Source};
+use super::wall::Wall;
 use crate::scene::{Beam, BeamTheory, InvalidInput, Waves, compliance};
 
 /// Factor from one number of modes to the next.

@@ -34,6 +34,7 @@ mod static_tail;
 mod text;
 mod theory;
 mod uncertainty;
+mod wall;
 
 use std::ops::AddAssign;
 

@@ -2,7 +2,7 @@
 
 use vibroimpact_sim::modal::{Outcome, Solution, Striker, SubImpact};
 
-use super::pose::Wall;
+use super::wall::Wall;
 use crate::impact::Impact;
 
 /// Weight of a change of the motion behind a quantity.
