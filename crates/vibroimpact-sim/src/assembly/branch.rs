@@ -38,10 +38,8 @@ const ITERATIONS_MAX_AT_SPECIAL: u32 = 32;
 const QUICK: u32 = 4;
 /// Number of bisections that locate a special point.
 const HALVINGS: u32 = 20;
-/// Where an orbit is sought between those on both sides. In the middle Newton's method may meet the singular point itself.
-const BETWEEN: [f64; 3] = [0.5, 0.3, 0.7];
-/// The bisections end where the parameters on both sides differ by less than this part of its range, or, at a fold, where the sides are as
-/// near as this part of the step.
+/// They end where the parameters on both sides differ by less than this part of its range, or, at a fold, where the sides are as near
+/// as this part of the step.
 const NEAR: f64 = 1e-8;
 const NEAR_FOLD: f64 = 1e-4;
 /// A multiplier that is farther than this from +1 at the located point has not passed it: at a graze it jumps.
@@ -578,9 +576,8 @@ where
         let mut orbit = from.orbit.clone();
         let (mut before, mut after) = (from.orbit.clone(), None);
         for _ in 0..HALVINGS {
-            let between = BETWEEN.map(|part| low + part * (high - low));
-            let mut found = between.into_iter().map(|step| at(step).map(|point| Some((step, point?))));
-            let Some((middle, point)) = found.find_map(Result::transpose).transpose()? else { break };
+            let middle = 0.5 * (low + high);
+            let Some(point) = at(middle)? else { break };
             let passed = if kind == Special::Fold {
                 self.rises(&point, tangent)? != rises
             } else {
