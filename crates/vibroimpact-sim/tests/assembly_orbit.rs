@@ -126,10 +126,14 @@ fn restitution_damping(e: f64) -> f64 {
         let root = (1.0 - z * z).sqrt();
         (-z / root * (PI - (2.0 * z * root).atan2(1.0 - 2.0 * z * z))).exp()
     };
-    let (mut low, mut high) = (0.0, 0.99);
+    bisected(0.0, 0.99, |z| of(z) > e)
+}
+
+/// Where a condition that holds below a point, and nowhere above it, ends.
+fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if of(middle) > e { low = middle } else { high = middle }
+        *(if holds(middle) { &mut low } else { &mut high }) = middle;
     }
     low
 }
@@ -261,8 +265,8 @@ impl Rattle {
     }
 
     /// `1 + trace + determinant` of the map of phase and speed from one wall to the other, mirrored: negative beyond an eigenvalue of -1.
-    /// Over a whole period it is +1, and the motion loses its symmetry.
-    fn remains_symmetric(&self, a: f64) -> f64 {
+    /// Over a whole period that eigenvalue is +1, and the motion loses its symmetry.
+    fn symmetry_margin(&self, a: f64) -> f64 {
         let &Rattle { e, omega, .. } = self;
         let ((phase, speed), half_period) = (self.symmetric(a), PI / omega);
         let moved = -a * half_period / omega * phase.sin() + 2.0 * a / (omega * omega) * phase.cos();
@@ -291,11 +295,7 @@ impl Rattle {
 #[test]
 fn a_rattling_mass_loses_its_symmetry_at_the_closed_forms_threshold() {
     let rattle = Rattle { e: 0.7, omega: 100.0 * PI, half_m: 2e-3 };
-    let (mut low, mut high) = (100.0, 200.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        *(if rattle.remains_symmetric(middle) > 0.0 { &mut low } else { &mut high }) = middle;
-    }
+    let threshold = bisected(100.0, 200.0, |a| rattle.symmetry_margin(a) > 0.0);
     let pitchfork = |step: f64| {
         let mut settings = BranchSettings { step, ..BranchSettings::over(100.0, 160.0) };
         settings.orbit.transient_periods = 0;
@@ -307,7 +307,7 @@ fn a_rattling_mass_loses_its_symmetry_at_the_closed_forms_threshold() {
     };
     let one = pitchfork(0.02);
     // a contact takes 10 us of a period of 20 ms
-    assert!((one.parameter / low - 1.0).abs() < 2e-3, "{} {low}", one.parameter);
+    assert!((one.parameter / threshold - 1.0).abs() < 2e-3, "{} {threshold}", one.parameter);
     for step in [0.011, 0.031] {
         let other = pitchfork(step);
         let apart = (other.parameter - one.parameter).abs();
@@ -367,13 +367,9 @@ fn a_branch_passes_its_folds_and_locates_its_first_contact() {
     let branch = follow_branch(hardening, &settings, &|| false).unwrap();
     // The steady motion without the stop reaches it where its amplitude equals the gap.
     let amplitude = |w: f64| 0.6 / ((100.0 - w * w).powi(2) + (0.4 * w).powi(2)).sqrt();
-    let (mut low, mut high) = (8.0, 10.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if amplitude(middle) < 0.05 { low = middle } else { high = middle }
-    }
+    let reached = bisected(8.0, 10.0, |w| amplitude(w) < 0.05);
     let grazing = branch.special.iter().find(|point| point.kind == Special::Grazing).unwrap();
-    assert!((grazing.parameter - low).abs() < 1e-3, "{grazing:?} {low}");
+    assert!((grazing.parameter - reached).abs() < 1e-3, "{grazing:?} {reached}");
     let folds: Vec<f64> = branch.special.iter().filter(|p| p.kind == Special::Fold).map(|p| p.parameter).collect();
     assert!(folds.len() >= 2 && folds[0] > 10.5, "{folds:?} {:?}", branch.special);
     assert!(branch.points.iter().any(|point| !point.orbit.stable));
