@@ -22,8 +22,8 @@ use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
 use vibroimpact::{InvalidInput, SceneError};
 
-/// Most memory of a short command is touched once, and the system's allocator takes it in small pages: 600 page faults for a
-/// beam of 40 modes, 5,000 for one of 1,000, each of 2 µs on some machines.
+/// A short command touches most of its memory once. The system's allocator takes it in small pages, with 600 page faults for a
+/// beam of 40 modes and 5,000 for one of 1,000. Each costs 2 µs on some machines; this allocator asks for large pages.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

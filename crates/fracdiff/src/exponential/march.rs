@@ -157,7 +157,7 @@ fn march(
     counts: &mut Counts,
 ) -> Result<(), Stop> {
     let (d, m) = (system.unknowns, system.densities);
-    // Sums of exponentials are not accurate for a time as short as that since the end of the last segment, which is zero.
+    // At its start no time has passed since the last segment, and sums of exponentials are not accurate for so short a time.
     let (mut y, mut f) = (recorder.start_value(system, &segment)?, vec![0.0; m]);
     system.density(segment.inside(segment.start), &y, &mut f)?;
     recorder.dense.begin_segment();

@@ -96,7 +96,7 @@ impl GalerkinStates {
                 if fraction == 1.0 {
                     return Ok(Kernel { order, whole, sum: constant(), local_exact: false });
                 }
-                // The recipe knows nothing of the terms.
+                // The recipe itself cannot name the term in its error.
                 let term = problem.terms.iter().position(|term| term.order == order).unwrap_or_default();
                 let allowed = "an integer, or a number with a fractional part from 0.05 to 0.95, for Galerkin states";
                 InvalidInput::unless(ALPHA.contains(&(1.0 - fraction)), ("terms", term, "order"), order, allowed)?;

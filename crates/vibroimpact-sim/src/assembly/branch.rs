@@ -30,8 +30,8 @@ use std::collections::BTreeSet;
 
 /// Change of the parameter for finite differences, relative to its range.
 const DIFFERENCE: f64 = 1e-6;
-/// Newton iterations of a step along the branch, and of one that locates a special point: at a pitchfork the equations are singular, and
-/// beside it Newton's method halves the error first.
+/// Newton iterations of a step along the branch, and of one that locates a special point. At a pitchfork the equations are singular, and
+/// near it each iteration only halves the error at first.
 const ITERATIONS_MAX: u32 = 8;
 const ITERATIONS_MAX_AT_SPECIAL: u32 = 32;
 /// After a step with fewer iterations than this the next step is longer.
@@ -42,7 +42,7 @@ const HALVINGS: u32 = 20;
 /// as this part of the step.
 const NEAR: f64 = 1e-8;
 const NEAR_FOLD: f64 = 1e-4;
-/// A multiplier that is farther than this from +1 at the located point has not passed it: at a graze it jumps.
+/// If no multiplier is as near to +1 as this at the located point, none has passed it there: at a graze multipliers jump.
 const AT_ONE: f64 = 1e-2;
 /// First step on a branch of twice the period, as a part of the first step of the others.
 const FIRST_OF_DOUBLED: f64 = 0.125;
@@ -104,8 +104,8 @@ impl BranchSettings {
 pub enum Special {
     /// The branch turns back in the parameter.
     Fold,
-    /// A multiplier passes +1 although the parameter does not turn: a symmetric motion loses its symmetry, and two that are mirror images
-    /// of each other begin, or, in motions without symmetry rarely, another branch crosses.
+    /// A multiplier passes +1 although the parameter does not turn. A symmetric motion loses its symmetry there, and two motions begin
+    /// that are mirror images of each other. In rare cases another branch crosses instead, also among motions without symmetry.
     Pitchfork,
     /// A multiplier passes -1.
     PeriodDoubling,
