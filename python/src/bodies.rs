@@ -84,14 +84,14 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 /// `floquet_multipliers` as a complex one.
 ///
 /// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value in the
-/// scene) to `to`; `step` is the first step as a share of that range. With `doublings` the branches of twice the period that
-/// begin at period doublings are followed too, 1 for those of the branch itself, 2 also for theirs. The entry `columns` is then a
+/// scene) to `to`; `step` is the first step as a share of that range. With `branches` the branches that begin at
+/// period doublings and pitchforks are followed too, 1 for those of the branch itself, 2 also for theirs. The entry `columns` is then a
 /// dictionary of arrays with a value for each orbit of all branches: those of the table that `--csv` writes.
 ///
 /// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends the search with the exception `Interrupted`,
 /// a `KeyboardInterrupt` whose `result` is the result so far.
 #[pyfunction]
-#[pyo3(signature = (scene, *, periods = 1, transient = 100, search = 1500, over = None, from_ = None, to = None, step = 0.02, doublings = 0))]
+#[pyo3(signature = (scene, *, periods = 1, transient = 100, search = 1500, over = None, from_ = None, to = None, step = 0.02, branches = 0))]
 #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
 pub fn orbit(
     py: Python<'_>,
@@ -103,7 +103,7 @@ pub fn orbit(
     from_: Option<f64>,
     to: Option<f64>,
     step: f64,
-    doublings: u32,
+    branches: u32,
 ) -> PyResult<Bound<'_, PyDict>> {
     let settings = OrbitSettings {
         forcing_periods: periods,
@@ -123,7 +123,7 @@ pub fn orbit(
     let (found, signals) = py.detach(|| {
         until_signal(|stop| {
             let needed = || InvalidInput::missing("to", "a finite number, because over needs it");
-            let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step, doublings };
+            let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step, branches };
             let scene = scene.bodies()?;
             let branch = scene.orbit_branch(&over, &settings, stop)?;
             let table = branch.csv().map_err(export::Failure::from)?;

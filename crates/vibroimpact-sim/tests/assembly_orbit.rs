@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, Orbit, OrbitOutcome,
-    OrbitSettings, Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch,
-    follow_doubled, run,
+    OrbitSettings, Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_beginning,
+    follow_branch, run,
 };
 
 fn point(shape: f64) -> Point {
@@ -227,7 +227,7 @@ fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
 
     // The branch of two periods begins there, on the side where the motion of one period is unstable.
     let build = |gamma| Ok::<_, InvalidInput>(shaken(gamma, e));
-    let doubled = follow_doubled(build, &settings, doubling[0], &|| false).unwrap();
+    let doubled = follow_beginning(build, &settings, &branch, 0, &|| false).unwrap();
     assert!(doubled.points.len() > 5, "{doubled:?}");
     let [first, last] = [&doubled.points[1], &doubled.points[doubled.points.len() - 1]];
     assert!(first.orbit.stable && first.parameter > doubling[0].parameter - 1e-6, "{first:?}");
@@ -313,6 +313,29 @@ fn a_rattling_mass_loses_its_symmetry_at_the_closed_forms_threshold() {
         let apart = (other.parameter - one.parameter).abs();
         assert!(apart <= other.uncertainty + one.uncertainty && other.uncertainty < 1e-6, "{other:?} {one:?}");
     }
+}
+
+/// Beyond the pitchfork the distance from symmetry, here the middle between both ends of the motion, grows as the square root.
+#[test]
+fn a_branch_without_symmetry_begins_at_the_pitchfork() {
+    let rattle = Rattle { e: 0.7, omega: 100.0 * PI, half_m: 2e-3 };
+    let build = |a| Ok::<_, InvalidInput>(rattle.shaken(a));
+    let mut settings = BranchSettings::over(130.0, 142.0);
+    settings.orbit.transient_periods = 0;
+    let symmetric = follow_branch(build, &settings, &|| false).unwrap();
+    let branch = follow_beginning(build, &settings, &symmetric, 0, &|| false).unwrap();
+    assert!(branch.complete && branch.returns_to.is_none() && branch.special.is_empty(), "{branch:?}");
+    let begin = symmetric.special[0].parameter;
+    let middle = |orbit: &Orbit| orbit.sides[0][0].displacement_max_m + orbit.sides[0][0].displacement_min_m;
+    let near: Vec<f64> = branch.points[1..]
+        .iter()
+        .take_while(|point| point.parameter < begin + 0.1)
+        .map(|point| middle(&point.orbit).powi(2) / (point.parameter - begin))
+        .collect();
+    assert!(near.len() > 3 && near.iter().all(|part| (part / near[0] - 1.0).abs() < 0.1), "{near:?}");
+    assert!(branch.points[1..].iter().all(|point| point.orbit.stable && point.parameter > begin));
+    // there is no second special point
+    assert!(follow_beginning(build, &settings, &symmetric, 1, &|| false).is_err());
 }
 
 /// Loads of 1 and 1.5 Hz repeat themselves every 2 s. Without contact the orbit is the sum of two steady motions.

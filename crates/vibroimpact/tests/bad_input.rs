@@ -98,7 +98,7 @@ fn numbers_of_options_are_refused_with_their_range() {
         (&["orbit", "scene.json"][..], "--periods", ["0", "1001", "1e2"], "a whole number from 1 to 1000"),
         (&["orbit", "scene.json"], "--search", ["-1", "10000001", "x"], "a whole number from 0 to 10000000"),
         (&["orbit", "scene.json"], "--transient", ["-1", "4294967296", "x"], "a whole number from 0 to 4294967295"),
-        (&["orbit", "scene.json", "--over", "end_s"], "--doublings", ["-1", "9", ""], "a whole number from 0 to 8"),
+        (&["orbit", "scene.json", "--over", "end_s"], "--branches", ["-1", "9", ""], "a whole number from 0 to 8"),
         (&["sweep", "sweep.json", "--out", "out"], "--threads", ["0", "4097", "x"], "a whole number from 1 to 4096"),
         (&identify, "--starts", ["0", "1001", "x"], "a whole number from 1 to 1000"),
         (

@@ -128,9 +128,9 @@ fn every_key_and_column_of_an_orbit_is_documented() {
     let table = dataset("assemblies/shaken-table.json");
     let text = documented(folder.path(), "`orbit`", &["orbit", &table], &["scene"]);
     assert_eq!(text["outcome"], "found");
-    let over = ["--over", "ground_motion.displacement_m", "--to", "0.00096", "--doublings", "1", "--csv", "branch.csv"];
+    let over = ["--over", "ground_motion.displacement_m", "--to", "0.00096", "--branches", "1", "--csv", "branch.csv"];
     let branch = documented(folder.path(), "`orbit`", &[&["orbit", &table][..], &over].concat(), &["scene"]);
-    assert_eq!(branch["doubled"].as_array().unwrap().len(), 1);
+    assert_eq!(branch["branches"].as_array().unwrap().len(), 1);
     let text = section(&page("outputs"), "`orbit`");
     let ours = [("table.", "NAME."), ("NAME.1.", "NAME.0."), ("ground_motion.displacement_m", "field")];
     columns(&folder.path().join("branch.csv"), &text, &ours);

@@ -190,10 +190,10 @@ fn doubled_branches_are_followed_drawn_and_written() {
     let folder = tempfile::tempdir().unwrap();
     let scene = crate::gallery::datasets("assemblies/shaken-table.json").display().to_string();
     let words = ["orbit", &scene, "--over", "ground_motion.displacement_m", "--to", "0.0011", "--json"];
-    let more = ["--doublings", "2", "--csv", "b.csv", "--plot", "b.svg"];
+    let more = ["--branches", "2", "--csv", "b.csv", "--plot", "b.svg"];
     let arguments: Vec<&str> = words.into_iter().chain(more).collect();
     let branch: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
-    let doubled = branch["doubled"].as_array().unwrap();
+    let doubled = branch["branches"].as_array().unwrap();
     let begins: Vec<f64> = doubled.iter().map(|branch| branch["begins_at"].as_f64().unwrap()).collect();
     assert_eq!(begins.len(), 2, "{begins:?}");
     let point = &branch["special_points"][0];
@@ -221,7 +221,35 @@ fn doubled_branches_are_followed_drawn_and_written() {
     assert!(picture.contains("once in each period"));
     // Otherwise the text says how to follow them.
     let text = stdout(&run(folder.path(), &words[..6]));
-    assert!(text.contains("--doublings 1"), "{text}");
+    assert!(text.contains("--branches 1"), "{text}");
+}
+
+/// Between two pitchforks the beam between two stops vibrates without symmetry. That branch is followed once, from one to the other.
+#[test]
+fn a_branch_between_two_pitchforks_is_followed_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"{ "bodies": { "beam": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.03, "modes": 3,
+            "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 166.67, "mass_per_length_kg_m": 0.78 }] } },
+        "contacts": [{ "name": "stops", "between": [{ "body": "beam", "location_m": 0.5 }, "ground"], "two_sided": true,
+            "gap_m": 0.0005, "law": "kelvin-voigt", "stiffness_n_m": 1e5, "damping_n_s_m": 20 }],
+        "loads": [{ "body": "beam", "location_m": 0.3, "force_n": 6.5, "frequency_hz": 18 }], "end_s": 1 }"#;
+    fs::write(folder.path().join("stops.json"), scene).unwrap();
+    let words = ["orbit", "stops.json", "--over", "loads[0].frequency_hz", "--to", "20", "--step", "0.05"];
+    let arguments: Vec<&str> = words.into_iter().chain(["--branches", "1", "--json"]).collect();
+    let found: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
+    let [one, other] = &found["special_points"].as_array().unwrap()[..] else { panic!("{}", found["special_points"]) };
+    assert!([one, other].iter().all(|point| point["kind"] == "pitchfork"));
+    let [branch] = &found["branches"].as_array().unwrap()[..] else { panic!("{}", found["branches"]) };
+    assert_eq!((&branch["parent"], &branch["begins_with"]), (&Value::from(0), &Value::from("pitchfork")));
+    assert_eq!((&branch["begins_at"], &branch["ends_at"]), (&one["value"], &other["value"]));
+    assert_eq!(branch["complete"], true);
+    // it is stable throughout, while the symmetric motion is unstable between the pitchforks
+    let orbits = branch["orbits"].as_array().unwrap();
+    assert!(orbits.len() > 5 && orbits[1..].iter().all(|orbit| orbit["stable"] == true));
+    let range = |orbit: &Value, key: &str| orbit["points"][0][key].as_f64().unwrap();
+    let middle = &orbits[orbits.len() / 2];
+    let asymmetry = range(middle, "displacement_max_m") / -range(middle, "displacement_min_m") - 1.0;
+    assert!(asymmetry.abs() > 0.05, "{asymmetry}");
 }
 
 #[test]

@@ -15,9 +15,11 @@
 //! Each special point is located by bisection between the orbits on either side. For a fold the direction of the branch decides, which
 //! follows from the linearised map at an orbit.
 //!
-//! At a period doubling a branch of twice the period begins, in the direction of the multiplier's eigenvector
-//! ([`follow_doubled`]). It may end there or at another period doubling of the same branch.
+//! At a period doubling a branch of twice the period begins, and at a pitchfork one of the same period, both in the direction of the
+//! multiplier's eigenvector ([`follow_beginning`]). It ends where it comes back to the first branch, there or at another such point of
+//! it, or at the end of the range. Its other half contains the same motions half a period later, or their mirror images.
 
+use super::branch_point::{branch_point, null_vectors};
 use super::orbit::{Orbit, OrbitOutcome, refine};
 use super::orbit_settings::OrbitSettings;
 use super::period_map::PeriodMap;
@@ -30,10 +32,8 @@ use std::collections::BTreeSet;
 
 /// Change of the parameter for finite differences, relative to its range.
 const DIFFERENCE: f64 = 1e-6;
-/// Newton iterations of a step along the branch, and of one that locates a special point. At a pitchfork the equations are singular, and
-/// near it each iteration only halves the error at first.
+/// Newton iterations of a step along the branch.
 const ITERATIONS_MAX: u32 = 8;
-const ITERATIONS_MAX_AT_SPECIAL: u32 = 32;
 /// After a step with fewer iterations than this the next step is longer.
 const QUICK: u32 = 4;
 /// Number of bisections that locate a special point.
@@ -42,15 +42,14 @@ const HALVINGS: u32 = 20;
 /// as this part of the step.
 const NEAR: f64 = 1e-8;
 const NEAR_FOLD: f64 = 1e-4;
-/// If no multiplier is as near to +1 as this at the located point, none has passed it there: at a graze multipliers jump.
-const AT_ONE: f64 = 1e-2;
-/// First step on a branch of twice the period, as a part of the first step of the others.
-const FIRST_OF_DOUBLED: f64 = 0.125;
-/// Largest number of iterations of a singular value decomposition.
-const SVD_ITERATIONS: usize = 10_000;
-/// Least distance of the first orbit of twice the period from a repetition after half of it, as a part of the step. It is twice the
-/// step where the branch begins along the eigenvector.
-const LEAST_ASYMMETRY: f64 = 0.2;
+/// First step on a branch that begins at another one, as a part of the first step of the others.
+const FIRST_FROM_PARENT: f64 = 0.125;
+/// Largest distance of its first orbit from the start, in steps: within 45 degrees of the eigenvector.
+const MOST_ASIDE: f64 = std::f64::consts::SQRT_2;
+/// A branch of twice the period has come back to its parent if its distance from it falls below this part of that of the orbit before.
+const JOINED: f64 = 1e-3;
+/// Largest distance of a pitchfork from a chord that passes it, as a part of the chord.
+const NEAR_PITCHFORK: f64 = 0.5;
 
 /// Settings for following a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,6 +122,13 @@ invalid_input::names!(Special, "special", {
     Grazing: "grazing",
 });
 
+impl Special {
+    /// Whether another branch begins at such a point, which [`follow_beginning`] follows.
+    pub fn begins_a_branch(self) -> bool {
+        matches!(self, Special::PeriodDoubling | Special::Pitchfork)
+    }
+}
+
 /// An orbit of a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchPoint {
@@ -155,9 +161,11 @@ pub struct Branch {
     pub points: Vec<BranchPoint>,
     /// Points at which the stability or the pattern of contacts changes.
     pub special: Vec<SpecialPoint>,
-    /// Whether the branch was followed to an end of the range, or back to that of half the period. If not, no orbit was found
-    /// beyond the last one.
+    /// Whether the branch was followed to an end of the range, or back to that at which it begins. If not, no orbit was found beyond
+    /// the last one.
     pub complete: bool,
+    /// The index of the special point of that one at which it comes back. The same branch, or its mirror image, begins there.
+    pub returns_to: Option<usize>,
     /// Whether it was interrupted.
     pub interrupted: bool,
     /// The contact that keeps something from earlier periods, if there is no first orbit for this reason
@@ -187,29 +195,38 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     follower.follow(start, tangent)
 }
 
-/// Follows the branch of twice the period that begins at a period doubling of another one, otherwise as [`follow_branch`].
+/// Follows the branch that begins at a period doubling or a pitchfork of another one, `parent.special[special]`, otherwise as
+/// [`follow_branch`].
 ///
 /// # Errors
-/// As [`follow_branch`].
-pub fn follow_doubled<L: ContactLaw + Clone, E: From<InvalidInput>>(
+/// As [`follow_branch`], and if no branch begins at a point of that kind.
+pub fn follow_beginning<L: ContactLaw + Clone, E: From<InvalidInput>>(
     build: impl Fn(f64) -> Result<Assembly<L>, E>,
     settings: &BranchSettings,
-    doubling: &SpecialPoint,
+    parent: &Branch,
+    special: usize,
     stop: &dyn Fn() -> bool,
 ) -> Result<Branch, E> {
-    let forcing_periods = doubling.orbit.forcing_periods.saturating_mul(2);
+    let allowed = "the index of a period doubling or a pitchfork among the special points of the parent";
+    let begins = |point: &&SpecialPoint| point.kind.begins_a_branch();
+    let Some(beginning) = parent.special.get(special).filter(begins) else {
+        return Err(InvalidInput::new("special", special, allowed).into());
+    };
+    let of_parent = beginning.orbit.forcing_periods;
+    let doubles = beginning.kind == Special::PeriodDoubling;
+    let forcing_periods = if doubles { of_parent.saturating_mul(2) } else { of_parent };
     let settings = BranchSettings { orbit: OrbitSettings { forcing_periods, ..settings.orbit }, ..*settings };
     settings.check()?;
-    let mut follower = Follower::new(build, &settings, &doubling.orbit, stop);
-    follower.half = Some(doubling.orbit.forcing_periods);
-    let state = DVector::from_column_slice(&doubling.orbit.state);
-    let Some(tangent) = follower.doubling_direction(&state, doubling.parameter)? else {
+    let mut follower = Follower::new(build, &settings, &beginning.orbit, stop);
+    follower.origin = Some(Origin { parent: &parent.special, kind: beginning.kind, of_parent });
+    let state = DVector::from_column_slice(&beginning.orbit.state);
+    let Some(tangent) = follower.eigenvector(&state, beginning.parameter)? else {
         return Ok(Branch { interrupted: stop(), ..Branch::default() });
     };
-    let OrbitOutcome::Found(orbit) = refine(&follower.map(doubling.parameter)?, state, &settings.orbit)? else {
+    let OrbitOutcome::Found(orbit) = refine(&follower.map(beginning.parameter)?, state, &settings.orbit)? else {
         return Ok(Branch { interrupted: stop(), ..Branch::default() });
     };
-    follower.follow(BranchPoint { parameter: doubling.parameter, orbit: *orbit }, Some(tangent))
+    follower.follow(BranchPoint { parameter: beginning.parameter, orbit: *orbit }, Some(tangent))
 }
 
 /// The special points between two neighbours on a branch. A multiplier that passes +1 counts as a pitchfork, which may be a fold.
@@ -237,8 +254,16 @@ fn differences(one: &Orbit, other: &Orbit) -> Vec<Special> {
     found
 }
 
-fn has_multiplier_at_one(orbit: &Orbit) -> bool {
-    orbit.floquet_multipliers.iter().any(|m| (m[0] - 1.0).hypot(m[1]) < AT_ONE)
+/// The phase at which its state is given, as a part of a period of the loads.
+fn phase_part(orbit: &Orbit) -> f64 {
+    orbit.phase_s * f64::from(orbit.forcing_periods) / orbit.period_s
+}
+
+/// The multiplier nearest to +1.
+fn nearest_to_one(orbit: &Orbit) -> f64 {
+    let distance = |m: &&[f64; 2]| (m[0] - 1.0).hypot(m[1]);
+    let nearest = orbit.floquet_multipliers.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map_or(0.0, |m| m[0])
 }
 
 /// A step along a branch.
@@ -259,6 +284,16 @@ impl Step {
     }
 }
 
+/// Where a branch begins at another one, its parent. It ends where it comes back to it.
+struct Origin<'a> {
+    /// The special points of the parent.
+    parent: &'a [SpecialPoint],
+    /// Kind of the one at which the branch begins.
+    kind: Special,
+    /// Periods of the loads after which the motion of the parent repeats itself.
+    of_parent: u32,
+}
+
 struct Follower<'a, F> {
     build: F,
     settings: &'a BranchSettings,
@@ -267,8 +302,8 @@ struct Follower<'a, F> {
     phase_part: f64,
     /// Those that were closed, at the latest phase or an earlier one.
     remembering: BTreeSet<usize>,
-    /// On a branch that began at a period doubling: half the periods of the loads.
-    half: Option<u32>,
+    /// Where the branch begins, if that is a point of another branch.
+    origin: Option<Origin<'a>>,
     stop: &'a dyn Fn() -> bool,
 }
 
@@ -279,8 +314,7 @@ where
     F: Fn(f64) -> Result<Assembly<L>, E>,
 {
     fn new(build: F, settings: &'a BranchSettings, first: &Orbit, stop: &'a dyn Fn() -> bool) -> Follower<'a, F> {
-        let phase_part = first.phase_s * f64::from(first.forcing_periods) / first.period_s;
-        Follower { build, settings, phase_part, remembering: BTreeSet::new(), half: None, stop }
+        Follower { build, settings, phase_part: phase_part(first), remembering: BTreeSet::new(), origin: None, stop }
     }
 
     /// Follows the branch from an orbit along a tangent.
@@ -289,14 +323,14 @@ where
         let mut current = start.clone();
         let mut branch = Branch { points: vec![start], ..Branch::default() };
         let Some(mut tangent) = tangent else { return Ok(branch) };
-        // the state changes fastest where a branch of twice the period begins
-        let mut step = if self.half.is_some() { FIRST_OF_DOUBLED * settings.step } else { settings.step };
+        // the state changes fastest where a branch begins at another one
+        let mut step = if self.origin.is_some() { FIRST_FROM_PARENT * settings.step } else { settings.step };
         let mut asymmetry: Option<DVector<f64>> = None;
-        // where a branch of twice the period begins, the linearised map gives the direction of the other branch through that point
-        let mut rises = if self.half.is_some() { None } else { Some(self.rises(&current, &tangent)?) };
+        // there the linearised map gives the direction of the other one
+        let mut rises = if self.origin.is_some() { None } else { Some(self.rises(&current, &tangent)?) };
         let mut turned = false;
         while branch.points.len() < settings.max_orbits {
-            let found = self.step(&current, &tangent, step, ITERATIONS_MAX)?;
+            let found = self.step(&current, &tangent, step)?;
             let found = match found {
                 Step::Found(next, iterations) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
                 Step::Remembers(contact) if self.remembering.insert(contact) || !turned => {
@@ -308,9 +342,9 @@ where
                 }
                 Step::Remembers(_) | Step::None => None,
             };
-            // a branch of twice the period does not begin along the one of half the period
-            let found = found.filter(|(.., moved)| {
-                self.half.is_none() || asymmetry.is_some() || moved.norm() > LEAST_ASYMMETRY * step
+            // a branch begins along the eigenvector, and not along its parent
+            let found = found.filter(|(next, ..)| {
+                rises.is_some() || self.chord(&current, next).is_ok_and(|chord| chord.norm() < MOST_ASIDE * step)
             });
             if (self.stop)() {
                 branch.interrupted = true;
@@ -323,9 +357,11 @@ where
                 }
                 continue;
             };
-            if asymmetry.is_some_and(|before| before.dot(&moved) < 0.0) {
-                // through the branch of half the period, to the same orbits half a period later
+            // through the parent, to the same orbits half a period later or to their mirror images
+            let joined = |before: DVector<f64>| before.dot(&moved) < JOINED * before.norm_squared();
+            if asymmetry.is_some_and(joined) || rises.is_some() && self.passes_pitchfork(&current, &next)? {
                 branch.complete = true;
+                branch.returns_to = self.nearest_of_parent(&current, &next)?.map(|(special, _)| special);
                 break;
             }
             asymmetry = Some(moved);
@@ -335,7 +371,7 @@ where
             let rises_here = rises.unwrap_or(new_tangent[new_tangent.len() - 1] > 0.0);
             let mut kinds = differences(&current.orbit, &next.orbit);
             let turns = rises_here != rises_next;
-            // a branch of twice the period begins with a multiplier at +1
+            // a branch that begins at another one does so with a multiplier at +1
             if turns || rises.is_none() {
                 kinds.retain(|kind| *kind != Special::Pitchfork);
             }
@@ -344,9 +380,12 @@ where
             }
             let mut special = Vec::new();
             for kind in kinds {
-                special.push(self.locate((&current, rises_here), (&tangent, step), kind, branch.points.len())?);
+                let before_orbit = branch.points.len();
+                special.extend(match kind {
+                    Special::Pitchfork => self.locate_pitchfork((&current, &next), before_orbit)?,
+                    _ => Some(self.locate((&current, rises_here), (&tangent, step), kind, before_orbit)?),
+                });
             }
-            special.retain(|point| point.kind != Special::Pitchfork || has_multiplier_at_one(&point.orbit));
             if (self.stop)() {
                 branch.interrupted = true;
                 break;
@@ -386,25 +425,65 @@ where
     /// How far an orbit on a branch of twice the period is from a repetition after half of it, scaled; no component on other
     /// branches. `None` if a run stops.
     fn asymmetry(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, E> {
-        let Some(half) = self.half else { return Ok(Some(DVector::zeros(0))) };
+        let doubles = |origin: &&Origin| origin.kind == Special::PeriodDoubling;
+        let Some(origin) = self.origin.as_ref().filter(doubles) else { return Ok(Some(DVector::zeros(0))) };
         let state = Self::state(&point.orbit);
-        let Ok(image) = self.map_over(point.parameter, half)?.apply(&state)? else { return Ok(None) };
+        let Ok(image) = self.map_over(point.parameter, origin.of_parent)?.apply(&state)? else { return Ok(None) };
         Ok(Some((image - &state).component_div(&self.scales(point)?)))
     }
 
-    /// The direction in which a branch of twice the period begins: the state changes along the eigenvector of the multiplier -1
-    /// over half of it, and the parameter does not.
-    fn doubling_direction(&self, state: &DVector<f64>, parameter: f64) -> Result<Option<DVector<f64>>, E> {
-        let Some(half) = self.half else { return Ok(None) };
-        let map = self.map_over(parameter, half)?;
+    /// The states of an orbit of any phase at that of this branch, one for each period of the loads; none if a run stops.
+    fn states_here(&self, parameter: f64, orbit: &Orbit) -> Result<Vec<DVector<f64>>, E> {
+        let mut by = (self.phase_part - phase_part(orbit)).rem_euclid(1.0);
+        let mut map = self.map_over(parameter, 1)?.at_phase(orbit.phase_s);
+        let (mut states, mut state) = (Vec::new(), Self::state(orbit));
+        for _ in 0..orbit.forcing_periods {
+            let Ok(turned) = map.turn(state, by)? else { break };
+            states.push(turned.clone());
+            (state, by) = (turned, 1.0);
+        }
+        Ok(states)
+    }
+
+    /// The special point of the parent, of the kind at which the branch begins, that is nearest to the chord from an orbit to the next
+    /// one, and its distance as a part of the chord.
+    fn nearest_of_parent(&self, one: &BranchPoint, other: &BranchPoint) -> Result<Option<(usize, f64)>, E> {
+        let Some(Origin { parent, kind, .. }) = self.origin else { return Ok(None) };
+        let (scales, chord) = (self.scales(one)?, self.chord(one, other)?);
+        let start = self.scaled(one.parameter, &Self::state(&one.orbit), &scales);
+        let mut nearest: Option<(usize, f64)> = None;
+        for (i, point) in parent.iter().enumerate().filter(|(_, point)| point.kind == kind) {
+            for state in self.states_here(point.parameter, &point.orbit)? {
+                let beside = self.scaled(point.parameter, &state, &scales) - &start;
+                let part = (beside.dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0);
+                let distance = (beside - part * &chord).norm() / chord.norm();
+                if nearest.is_none_or(|(_, least)| distance < least) {
+                    nearest = Some((i, distance));
+                }
+            }
+        }
+        Ok(nearest)
+    }
+
+    /// Whether the branch passes a pitchfork of its parent, where it is a parabola, between two orbits.
+    fn passes_pitchfork(&self, one: &BranchPoint, other: &BranchPoint) -> Result<bool, E> {
+        let begins = self.origin.as_ref().is_some_and(|origin| origin.kind == Special::Pitchfork);
+        Ok(begins && self.nearest_of_parent(one, other)?.is_some_and(|(_, distance)| distance < NEAR_PITCHFORK))
+    }
+
+    /// The direction in which a branch begins at another one: the state changes along the eigenvector of the multiplier -1 at a period
+    /// doubling, over the period of the parent, or of +1 at a pitchfork, and the parameter does not.
+    fn eigenvector(&self, state: &DVector<f64>, parameter: f64) -> Result<Option<DVector<f64>>, E> {
+        let Some(origin) = &self.origin else { return Ok(None) };
+        let map = self.map_over(parameter, origin.of_parent)?;
+        let multiplier = if origin.kind == Special::PeriodDoubling { -1.0 } else { 1.0 };
         let scales = map.scales(state, state);
         let Ok(jacobian) = map.derivative(state, &scales)? else { return Ok(None) };
         let n = state.len();
-        let opposite =
-            DMatrix::from_fn(n, n, |i, j| jacobian[(i, j)] * scales[j] / scales[i] + f64::from(u8::from(i == j)));
-        let decomposed = opposite.try_svd(false, true, f64::EPSILON, SVD_ITERATIONS);
-        let rows = decomposed.and_then(|decomposed| Some((decomposed.singular_values.imin(), decomposed.v_t?)));
-        Ok(rows.map(|(least, rows)| rows.row(least).transpose().insert_row(n, 0.0)))
+        let singular = DMatrix::from_fn(n, n, |i, j| {
+            jacobian[(i, j)] * scales[j] / scales[i] - if i == j { multiplier } else { 0.0 }
+        });
+        Ok(null_vectors(singular).map(|(along, _)| along.insert_row(n, 0.0)))
     }
 
     fn state(orbit: &Orbit) -> DVector<f64> {
@@ -412,10 +491,15 @@ where
     }
 
     /// State and parameter, scaled by their sizes.
-    fn scaled(&self, point: &BranchPoint, scales: &DVector<f64>) -> DVector<f64> {
-        let state = Self::state(&point.orbit).component_div(scales);
-        let n = state.len();
-        state.insert_row(n, point.parameter / self.range())
+    fn scaled(&self, parameter: f64, state: &DVector<f64>, scales: &DVector<f64>) -> DVector<f64> {
+        state.component_div(scales).insert_row(state.len(), parameter / self.range())
+    }
+
+    /// The difference of two orbits, scaled.
+    fn chord(&self, one: &BranchPoint, other: &BranchPoint) -> Result<DVector<f64>, E> {
+        let scales = self.scales(one)?;
+        let scaled = |point: &BranchPoint| self.scaled(point.parameter, &Self::state(&point.orbit), &scales);
+        Ok(scaled(other) - scaled(one))
     }
 
     fn scales(&self, point: &BranchPoint) -> Result<DVector<f64>, E> {
@@ -481,10 +565,9 @@ where
 
     /// The unit vector from one orbit to the next, along the branch.
     fn between(&self, one: &BranchPoint, other: &BranchPoint, before: &DVector<f64>) -> DVector<f64> {
-        let Ok(scales) = self.scales(one) else { return before.clone() };
-        let difference = self.scaled(other, &scales) - self.scaled(one, &scales);
-        let size = difference.norm();
-        if size > 0.0 { difference / size } else { before.clone() }
+        let Ok(chord) = self.chord(one, other) else { return before.clone() };
+        let size = chord.norm();
+        if size > 0.0 { chord / size } else { before.clone() }
     }
 
     /// Compares states at the middle of the longest time at which the remembering contacts are open; `false` where that fails.
@@ -511,13 +594,13 @@ where
         Ok(true)
     }
 
-    /// The next orbit along the tangent, and the number of iterations, of which there may be so many.
-    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64, iterations_max: u32) -> Result<Step, E> {
+    /// The next orbit along the tangent, and the number of iterations.
+    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Step, E> {
         let scales = self.scales(from)?;
-        let base = self.scaled(from, &scales);
+        let base = self.scaled(from.parameter, &Self::state(&from.orbit), &scales);
         let n = scales.len();
         let mut at = &base + step * tangent;
-        for iteration in 1..=iterations_max {
+        for iteration in 1..=ITERATIONS_MAX {
             let state = at.rows(0, n).component_mul(&scales);
             let parameter = at[n] * self.range();
             let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
@@ -562,6 +645,36 @@ where
         })
     }
 
+    /// The pitchfork between two neighbours, from where the multiplier between theirs is +1. `None` where there is none: at a graze
+    /// multipliers jump.
+    fn locate_pitchfork(
+        &self,
+        (one, other): (&BranchPoint, &BranchPoint),
+        before_orbit: usize,
+    ) -> Result<Option<SpecialPoint>, E> {
+        let (scales, chord) = (self.scales(one)?, self.chord(one, other)?);
+        let n = scales.len();
+        let beyond = [one, other].map(|point| nearest_to_one(&point.orbit) - 1.0);
+        let part = (beyond[0] / (beyond[0] - beyond[1])).clamp(0.0, 1.0);
+        let start = self.scaled(one.parameter, &Self::state(&one.orbit), &scales) + part * &chord;
+        let unscaled = |z: &DVector<f64>| (z.rows(0, n).component_mul(&scales), z[n] * self.range());
+        let linearised = |z: &DVector<f64>| {
+            let (state, parameter) = unscaled(z);
+            let Some(image) = self.image(parameter, &state) else { return Ok(None) };
+            let defect = (image - &state).component_div(&scales);
+            Ok::<_, E>(self.linearised(&state, parameter, &scales)?.map(|matrix| (defect, matrix)))
+        };
+        let Some((found, last_step)) = branch_point(&linearised, &start, chord.norm())? else { return Ok(None) };
+        let (state, parameter) = unscaled(&found);
+        Ok(match refine(&self.map(parameter)?, state, &self.settings.orbit)? {
+            OrbitOutcome::Found(orbit) => {
+                let uncertainty = last_step * self.range().abs();
+                Some(SpecialPoint { kind: Special::Pitchfork, parameter, uncertainty, before_orbit, orbit: *orbit })
+            }
+            _ => None,
+        })
+    }
+
     /// A special point within a step from an orbit, at which the parameter rises or falls; it comes before the orbit of this number.
     fn locate(
         &self,
@@ -570,7 +683,7 @@ where
         mut kind: Special,
         before_orbit: usize,
     ) -> Result<SpecialPoint, E> {
-        let at = |step: f64| self.step(from, tangent, step, ITERATIONS_MAX_AT_SPECIAL).map(Step::found);
+        let at = |step: f64| self.step(from, tangent, step).map(Step::found);
         let (mut low, mut high) = (0.0, step);
         let (mut below, mut above, mut outside) = (from.parameter, f64::NAN, f64::NAN);
         let mut orbit = from.orbit.clone();

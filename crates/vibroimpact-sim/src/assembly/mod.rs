@@ -48,6 +48,7 @@
 //! up to which event times agree.
 
 mod branch;
+mod branch_point;
 pub(crate) mod change;
 mod collocate;
 mod damping;
@@ -98,7 +99,7 @@ mod trial;
 mod watch;
 pub(crate) mod wave;
 
-pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch, follow_doubled};
+pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_beginning, follow_branch};
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
 pub use miss::NearMiss;
 pub use no_derivative::NoDerivative;

@@ -21,15 +21,15 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact orbit rig.json --over 'loads[0].frequency_hz' --from 20 --to 80 --plot response.svg
                                                  the frequency response, with its unstable parts
   vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --json --csv branch.csv
-  vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --doublings 2 --plot bifurcations.svg
-                                                 also the motions of two and of four periods that begin on the way
+  vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --branches 2 --plot bifurcations.svg
+                                                 also the motions that begin on the way, of two and four periods
 
 The scene is one of bodies with a harmonic load, or with several that have a common period. After a transient from its
 start, Newton's method finds the periodic motion; its Floquet multipliers show whether it is stable. If it fails, the
 motion is followed for many more periods (--search), and Newton's method begins where it nearly repeats itself. Over a
 field (a path as in a sweep) the branch is followed round its folds, and folds, losses of symmetry (pitchforks), period
-doublings, Neimark-Sacker points and grazings are located. With --doublings the motions of twice the period that begin
-at period doublings are followed too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends
+doublings, Neimark-Sacker points and grazings are located. With --branches the motions that begin at period doublings
+(of twice the period) and at pitchforks (one of the two that are mirror images) are followed too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends
 the search and prints the results so far.
 
 The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writing fails.";
@@ -60,10 +60,10 @@ pub struct Arguments {
     /// First step, as a fraction of the range
     #[arg(long, value_name = "PART", requires = "over", value_parser = super::real, default_value_t = 0.02, allow_hyphen_values = true)]
     step: f64,
-    /// How often to follow the branches of twice the period that begin at period doublings: 1 for those of the branch itself,
-    /// 2 also for theirs, and so on
+    /// How often to follow the branches that begin at period doublings and pitchforks: 1 for those of the branch itself, 2 also
+    /// for theirs, and so on
     #[arg(long, value_name = "N", requires = "over", default_value_t = 0, value_parser = super::whole::<u32>(0..=8), allow_negative_numbers = true)]
-    doublings: u32,
+    branches: u32,
     /// Print one JSON object in place of the summary
     #[arg(long)]
     json: bool,
@@ -95,7 +95,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             false => Ok(format!("{headline}\n\n{}{}", orbit::text(&found), signature())),
         };
     };
-    let over = Over { field, from: arguments.from, to, step: arguments.step, doublings: arguments.doublings };
+    let over = Over { field, from: arguments.from, to, step: arguments.step, branches: arguments.branches };
     let branch = scene.orbit_branch(&over, &settings, &|| stop.load(Ordering::Relaxed)).map_err(as_option)?;
     let printed = match arguments.json {
         true => branch.json(&scene)?,

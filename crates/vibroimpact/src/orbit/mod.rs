@@ -8,9 +8,10 @@ mod text;
 use contact_models::Law;
 use invalid_input::InvalidInput;
 use serde_json::Value;
+use std::collections::BTreeSet;
 use vibroimpact_sim::assembly::{
-    Assembly, Branch, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, Outcome, Reason, SideMotion, Special,
-    find_orbit_until, follow_branch, follow_doubled,
+    Assembly, Branch, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, Outcome, Reason, SideMotion,
+    find_orbit_until, follow_beginning, follow_branch,
 };
 
 use crate::assembly::{AssemblyScene, Posed};
@@ -20,7 +21,7 @@ use crate::scene::FieldPath;
 pub use picture::picture;
 use summary::INTERRUPTED;
 pub use summary::{
-    BranchOrbit, BranchPart, BranchSummary, DoubledBranch, Found, OrbitSummary, Over, PointMotion, Recurrence,
+    BranchOrbit, BranchPart, BranchSummary, Found, OrbitSummary, Over, PointMotion, Recurrence, SideBranch,
     SpecialPoint,
 };
 pub use text::text;
@@ -71,8 +72,8 @@ impl AssemblyScene {
         })
     }
 
-    /// Follows the branch of periodic motions over a field, and the branches that begin at its period doublings as often as
-    /// requested. `stop` is called from time to time, and ends the search with the orbits so far.
+    /// Follows the branch of periodic motions over a field, and the branches that begin at its period doublings and pitchforks as often
+    /// as requested. `stop` is called from time to time, and ends the search with the orbits so far.
     ///
     /// # Errors
     /// As [`AssemblyScene::orbit`]; a field that the scene does not have, that is not a number, or on which the periodic motion does
@@ -118,36 +119,32 @@ impl AssemblyScene {
             Fault::Assembly(fault) => in_scene(&posed, fault),
         };
         let main = follow_branch(build, &branch, stop).map_err(in_scene)?;
-        let mut doubled = Vec::new();
+        let mut side = Vec::new();
         // those that begin on the branches of the turn before
-        let mut begin = 0;
-        for turn in 0..over.doublings {
-            let parents: Vec<&Branch> =
-                if turn == 0 { vec![&main] } else { doubled[begin..].iter().map(|(_, branch)| branch).collect() };
-            let doublings: Vec<_> = parents
-                .into_iter()
-                .flat_map(|branch| &branch.special)
-                .filter(|point| point.kind == Special::PeriodDoubling)
-                .cloned()
-                .collect();
-            begin = doubled.len();
-            for doubling in doublings {
-                if stop() {
-                    break;
+        let mut parents = vec![(0, main.clone())];
+        for _ in 0..over.branches {
+            let mut found = Vec::new();
+            for (number, parent) in &parents {
+                let mut returned_to = BTreeSet::new();
+                for (special, point) in parent.special.iter().enumerate() {
+                    if !point.kind.begins_a_branch() || returned_to.contains(&special) || stop() {
+                        continue;
+                    }
+                    let begun = follow_beginning(build, &branch, parent, special, stop).map_err(in_scene)?;
+                    returned_to.extend(begun.returns_to);
+                    side.push(SideBranch {
+                        parent: *number,
+                        begins_with: point.kind.as_str(),
+                        begins_at: point.parameter,
+                        ends_at: begun.returns_to.map(|special| parent.special[special].parameter),
+                        branch: BranchPart::new(&posed, &begun),
+                    });
+                    found.push((side.len(), begun));
                 }
-                let found = follow_doubled(build, &branch, &doubling, stop).map_err(in_scene)?;
-                doubled.push((doubling.parameter, found));
             }
+            parents = found;
         }
-        let part = |branch: &Branch| BranchPart::new(&posed, branch);
-        Ok(BranchSummary {
-            field: over.field.to_owned(),
-            main: part(&main),
-            doubled: doubled
-                .iter()
-                .map(|(begins_at, branch)| DoubledBranch { begins_at: *begins_at, branch: part(branch) })
-                .collect(),
-        })
+        Ok(BranchSummary { field: over.field.to_owned(), main: BranchPart::new(&posed, &main), branches: side })
     }
 }
 
@@ -232,9 +229,9 @@ impl OrbitSummary {
 }
 
 impl BranchSummary {
-    /// The branch, number 0, and those that begin at its period doublings.
+    /// The branch, number 0, and those that begin at others.
     pub fn branches(&self) -> impl Iterator<Item = &BranchPart> {
-        std::iter::once(&self.main).chain(self.doubled.iter().map(|doubled| &doubled.branch))
+        std::iter::once(&self.main).chain(self.branches.iter().map(|side| &side.branch))
     }
 
     /// The orbits of all branches as a table, one per row, with the largest multiplier and the motion of every side.

@@ -120,7 +120,7 @@ pub struct SpecialPoint {
 /// One branch of periodic motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BranchPart {
-    /// Whether the branch was followed to an end of the range, or back to the branch at whose period doubling it begins.
+    /// Whether the branch was followed to an end of the range, or back to the branch at which it begins.
     pub complete: bool,
     /// Whether it was interrupted.
     pub interrupted: bool,
@@ -133,17 +133,23 @@ pub struct BranchPart {
     pub special_points: Vec<SpecialPoint>,
 }
 
-/// A branch of twice the period of the one at whose period doubling it begins.
+/// A branch that begins at another one: of twice its period, or of the same period and with less symmetry.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DoubledBranch {
-    /// The field's value at the period doubling.
+pub struct SideBranch {
+    /// The other one: 0 for that of the motion at the first value, or from 1 on its place in [`BranchSummary::branches`].
+    pub parent: usize,
+    /// `period doubling` or `pitchfork`.
+    pub begins_with: &'static str,
+    /// The field's value there.
     pub begins_at: f64,
+    /// The field's value at another such point, at which it comes back; `None` if it does not.
+    pub ends_at: Option<f64>,
     /// The branch.
     #[serde(flatten)]
     pub branch: BranchPart,
 }
 
-/// A branch of periodic motions over a field, and those that begin at its period doublings.
+/// A branch of periodic motions over a field, and those that begin at its period doublings and pitchforks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BranchSummary {
     /// The field that is followed.
@@ -151,8 +157,8 @@ pub struct BranchSummary {
     /// The branch of the motion at the first value.
     #[serde(flatten)]
     pub main: BranchPart,
-    /// Branches that begin at its period doublings, then those that begin at theirs, as often as requested.
-    pub doubled: Vec<DoubledBranch>,
+    /// Branches that begin at it, then those that begin at these, as often as requested.
+    pub branches: Vec<SideBranch>,
 }
 
 impl OrbitSummary {
@@ -193,6 +199,7 @@ pub struct Over<'a> {
     pub to: f64,
     /// First step, as a part of the range. The longest is 0.05, or this if it is larger.
     pub step: f64,
-    /// How often the branches that begin at period doublings are followed: 1 for those of the branch itself, 2 also for theirs, ...
-    pub doublings: u32,
+    /// How often the branches that begin at period doublings and pitchforks are followed: 1 for those of the branch itself, 2 also for
+    /// theirs, ...
+    pub branches: u32,
 }

@@ -124,17 +124,18 @@ impl BranchSummary {
         }
         let mut text = String::new();
         part(&mut text, &self.field, &self.main);
-        for doubled in &self.doubled {
-            let _ = writeln!(text, "\n  from the period doubling at {:.9}", doubled.begins_at);
-            if doubled.branch.orbits.is_empty() {
-                text += "    no motion of twice the period was found\n";
+        for side in &self.branches {
+            let to = side.ends_at.map_or_else(String::new, |end| format!(" to that at {end:.9}"));
+            let _ = writeln!(text, "\n  from the {} at {:.9}{to}", side.begins_with, side.begins_at);
+            if side.branch.orbits.is_empty() {
+                text += "    no motion was found that begins there\n";
             } else {
-                part(&mut text, &self.field, &doubled.branch);
+                part(&mut text, &self.field, &side.branch);
             }
         }
-        let doublings = self.main.special_points.iter().filter(|point| point.kind == Special::PeriodDoubling.as_str());
-        if self.doubled.is_empty() && doublings.count() > 0 {
-            text += "\n  --doublings 1 follows the motions of twice the period that begin at period doublings\n";
+        let mut kinds = self.main.special_points.iter().filter_map(|point| point.kind.parse().ok());
+        if self.branches.is_empty() && kinds.any(Special::begins_a_branch) {
+            text += "\n  --branches 1 follows the motions that begin at period doublings and pitchforks\n";
         }
         text
     }
