@@ -48,7 +48,6 @@
 //! up to which event times agree.
 
 mod branch;
-mod branch_point;
 pub(crate) mod change;
 mod collocate;
 mod damping;
