@@ -15,7 +15,7 @@ use crate::statics::solve;
 use std::f64::consts::PI;
 
 /// Largest number of terms; beyond them the contribution of the edges is taken as constant.
-const TERMS: i32 = 4000;
+const TERMS: i32 = 100_000;
 /// A term that has decayed over this distance is zero to rounding.
 const FAR: f64 = 40.0;
 
