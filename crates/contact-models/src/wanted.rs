@@ -80,7 +80,9 @@ pub fn reduced_mass_kg(first_kg: f64, second_kg: f64) -> Result<f64, InvalidInpu
     }
     let one_moves = !(immovable(first_kg) && immovable(second_kg));
     InvalidInput::unless(one_moves, "mass_kg", second_kg, "finite for at least one of the two bodies")?;
-    Ok(1.0 / (1.0 / first_kg + 1.0 / second_kg))
+    // The mass of a striker at an immovable body is not rounded.
+    let light = first_kg.min(second_kg);
+    Ok(light / (1.0 + light / first_kg.max(second_kg)))
 }
 
 /// The damping ratio from the usual formula `e = exp(-pi zeta / sqrt(1 - zeta^2))`, for a dashpot that pulls until the gap

@@ -60,7 +60,9 @@ fn two_bodies_are_equivalent_to_their_reduced_mass() {
     let (first, second) = (0.3, 0.6);
     let wanted = Wanted { mass_kg: reduced_mass_kg(first, second).unwrap(), ..WANTED };
     assert!((wanted.mass_kg - 0.2).abs() < 1e-15);
-    assert_eq!(reduced_mass_kg(0.3, f64::INFINITY), Ok(0.3));
+    for mass_kg in [0.3, 0.013, 1e-30, 1e30] {
+        assert_eq!(reduced_mass_kg(mass_kg, f64::INFINITY), Ok(mass_kg));
+    }
     let law = wanted.hunt_crossley(1.5).unwrap();
     let branch = law.touch(&Memory::default(), wanted.speed_m_s);
     let slope = |[x1, v1, x2, v2]: [f64; 4]| {
