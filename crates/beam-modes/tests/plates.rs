@@ -238,8 +238,10 @@ fn input_out_of_range_is_named() {
     }
     let theory = PlateTheory::Mindlin { shear_coefficient: 0.86 };
     assert_eq!(field(Plate { theory, ..plate }), "theory");
-    let theory = PlateTheory::Mindlin { shear_coefficient: -0.86 };
-    assert_eq!(field(Plate { theory, edges: [P; 4], ..plate }), "shear_coefficient");
+    for shear_coefficient in [-0.86, 0.0, 2.1, f64::NAN] {
+        let theory = PlateTheory::Mindlin { shear_coefficient };
+        assert_eq!(field(Plate { theory, edges: [P; 4], ..plate }), "shear_coefficient");
+    }
     assert_eq!(field(Plate { width_m: 1e-5, ..plate }), "width_m");
     assert_eq!(field(Plate { thickness_m: 1e-150, ..plate }), "thickness_m");
     assert_eq!(field(Plate { youngs_modulus_pa: 1e300, ..plate }), "youngs_modulus_pa");

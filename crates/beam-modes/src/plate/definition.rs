@@ -120,8 +120,8 @@ impl Plate {
     /// Accepts a plate that can be computed.
     ///
     /// # Errors
-    /// A length, modulus or density that is not positive, a Poisson's ratio out of range, Mindlin's theory for a plate that is
-    /// not pinned along all edges, or a ratio of length and width beyond 10,000.
+    /// A length, modulus or density that is not positive, a Poisson's ratio or shear coefficient out of range, Mindlin's theory
+    /// for a plate that is not pinned along all edges, or a ratio of length and width beyond 10,000.
     pub fn checked(&self) -> Result<(), InvalidInput> {
         let sizes = [
             ("length_m", self.length_m),
@@ -139,7 +139,9 @@ impl Plate {
             return Err(InvalidInput::new("poissons_ratio", nu, allowed));
         }
         if let PlateTheory::Mindlin { shear_coefficient } = self.theory {
-            InvalidInput::require_positive("shear_coefficient", shear_coefficient)?;
+            let in_range = shear_coefficient > 0.0 && shear_coefficient <= 2.0;
+            let allowed = "a number greater than 0 and not greater than 2";
+            InvalidInput::unless(in_range, "shear_coefficient", shear_coefficient, allowed)?;
             if !self.pinned_all_round() {
                 let allowed = "\"kirchhoff\" for a plate that is not pinned along all four edges";
                 return Err(InvalidInput::new("theory", "mindlin", allowed));
