@@ -1,7 +1,11 @@
 //! Integrals with `e^{i Omega t}`.
 
+use crate::panel::lanes::{ComplexLanes, Lanes};
 use crate::panel::legendre::{Legendre, Nodal, Q};
+use crate::panel::vector::LANES;
 use num_complex::Complex64;
+use std::array;
+use std::ops::{Add, Mul};
 
 /// `e^{i Omega t}` over a stretch of time.
 pub(crate) struct Wave {
@@ -32,34 +36,43 @@ pub(crate) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
 
 /// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
 pub(crate) fn turned_mean(angle: f64, force: &Legendre) -> Complex64 {
-    Complex64::cis(0.5 * angle) * centred_mean(&spherical_bessel(0.5 * angle), force)
+    let [re, im] = centred_mean(&spherical_bessel(0.5 * angle), force);
+    Complex64::cis(0.5 * angle) * Complex64::new(re, im)
 }
 
-/// The same, of `e^{i angle (x - 1/2)}`, from the spherical Bessel functions of half the angle:
-/// `int_0^1 e^{i angle (x - 1/2)} P_n(2x-1) dx = i^n j_n(angle/2)`.
-pub(crate) fn centred_mean(bessel: &Nodal, force: &Legendre) -> Complex64 {
-    let part = |first: usize| {
-        let sign = |n: usize| if n % 4 < 2 { 1.0 } else { -1.0 };
-        (first..Q).step_by(2).map(|n| sign(n) * force.0[n] * bessel[n]).sum::<f64>()
-    };
-    Complex64::new(part(0), part(1))
+/// Real and imaginary part of the same, of `e^{i angle (x - 1/2)}`, from the spherical Bessel functions of half the angle, or of
+/// half of some angles: `int_0^1 e^{i angle (x - 1/2)} P_n(2x-1) dx = i^n j_n(angle/2)`.
+#[inline(always)]
+pub(crate) fn centred_mean<T>(bessel: &[T; Q], force: &Legendre) -> [T; 2]
+where
+    T: Copy + Add<Output = T> + Mul<f64, Output = T>,
+{
+    let mut parts = [bessel[0] * force.0[0], bessel[1] * force.0[1]];
+    for n in 2..Q {
+        let sign = if n % 4 < 2 { 1.0 } else { -1.0 };
+        parts[n % 2] = parts[n % 2] + bessel[n] * (sign * force.0[n]);
+    }
+    parts
 }
+
+/// Below the first of these numbers the Bessel functions are computed from power series, and beyond the second one upwards.
+const DOWNWARDS: [f64; 2] = [1e-2, Q as f64];
+/// Order at which the recurrence downwards begins: `(j_24(y)/j_7(y))^2 < 1e-18` up to `y = Q`.
+const HIGH: usize = 24;
+const FACTORS: [f64; HIGH] = {
+    let (mut factors, mut n) = ([0.0; HIGH], 0);
+    while n < HIGH {
+        factors[n] = (2 * n + 1) as f64;
+        n += 1;
+    }
+    factors
+};
 
 /// The spherical Bessel functions `j_n(y)`: by the recurrence `j_{n-1} + j_{n+1} = (2n+1)/y j_n`, upwards where that is stable
-/// and otherwise downwards, from an order so high that its value does not matter (Miller's algorithm), or from a power series.
-pub(crate) fn spherical_bessel(y: f64) -> Nodal {
-    /// Order at which the recurrence downwards begins: `(j_24(y)/j_7(y))^2 < 1e-18` up to `y = Q`.
-    const HIGH: usize = 24;
-    const FACTORS: [f64; HIGH] = {
-        let (mut factors, mut n) = ([0.0; HIGH], 0);
-        while n < HIGH {
-            factors[n] = (2 * n + 1) as f64;
-            n += 1;
-        }
-        factors
-    };
+/// and otherwise downwards, or from a power series.
+fn spherical_bessel(y: f64) -> Nodal {
     let mut bessel = [0.0; Q];
-    if y.abs() < 1e-2 {
+    if y.abs() < DOWNWARDS[0] {
         // j_n(y) = y^n/(2n+1)!! (1 - y^2/2/(2n+3) + (y^2/2)^2/2/(2n+3)/(2n+5) - ..), four terms of which matter
         let (half_square, mut power) = (0.5 * y * y, 1.0);
         for (n, value) in bessel.iter_mut().enumerate() {
@@ -70,26 +83,54 @@ pub(crate) fn spherical_bessel(y: f64) -> Nodal {
         }
         return bessel;
     }
-    let (inverse, (sin, cos)) = (y.recip(), y.sin_cos());
-    let first = [sin * inverse, (sin * inverse - cos) * inverse];
-    if y.abs() > Q as f64 {
-        bessel[..2].copy_from_slice(&first);
-        for n in 1..Q - 1 {
-            bessel[n + 1] = FACTORS[n] * inverse * bessel[n] - bessel[n - 1];
-        }
-        return bessel;
+    let wave = Complex64::cis(y);
+    if y.abs() <= DOWNWARDS[1] {
+        return downwards(Lanes([y; LANES]), ComplexLanes::of(|_| wave)).map(|lanes| lanes.0[0]);
     }
-    let (mut above, mut here) = (0.0, 1.0);
+    let inverse = y.recip();
+    bessel[0] = wave.im * inverse;
+    bessel[1] = (bessel[0] - wave.re) * inverse;
+    for n in 1..Q - 1 {
+        bessel[n + 1] = FACTORS[n] * inverse * bessel[n] - bessel[n - 1];
+    }
+    bessel
+}
+
+/// The spherical Bessel functions of some numbers, from these numbers and their `e^{iy}`.
+#[inline(always)]
+pub(crate) fn spherical_bessels(y: Lanes, wave: ComplexLanes) -> [Lanes; Q] {
+    let [least, most] = DOWNWARDS;
+    if y.0.iter().all(|y| (least..=most).contains(&y.abs())) {
+        return downwards(y, wave);
+    }
+    let each = y.0.map(spherical_bessel);
+    array::from_fn(|n| Lanes::of(|l| each[l][n]))
+}
+
+/// By the recurrence downwards, from an order so high that its value does not matter (Miller's algorithm).
+#[inline(always)]
+fn downwards(y: Lanes, wave: ComplexLanes) -> [Lanes; Q] {
+    let inverse = Lanes::of(|l| y.0[l].recip());
+    let mut bessel = [Lanes::ZERO; Q];
+    let (mut above, mut here) = (Lanes::ZERO, Lanes::ONE);
     for n in (1..HIGH).rev() {
-        let below = FACTORS[n] * inverse * here - above;
+        let below = inverse * FACTORS[n] * here - above;
         (above, here) = (here, below);
         if n <= Q {
             bessel[n - 1] = below;
         }
     }
-    // the larger of the first two has more digits
-    let scale = if first[0].abs() > first[1].abs() { first[0] / bessel[0] } else { first[1] / bessel[1] };
-    bessel.map(|value| scale * value)
+    let zeroth = wave.im * inverse;
+    let first = (zeroth - wave.re) * inverse;
+    let scale = Lanes::of(|l| {
+        // the larger of the first two has more digits
+        let larger = if zeroth.0[l].abs() > first.0[l].abs() { (zeroth, bessel[0]) } else { (first, bessel[1]) };
+        larger.0.0[l] / larger.1.0[l]
+    });
+    for value in &mut bessel {
+        *value = *value * scale;
+    }
+    bessel
 }
 
 #[cfg(test)]

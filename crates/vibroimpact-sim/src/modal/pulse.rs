@@ -1,7 +1,9 @@
 //! The force of one contact as it is computed, and its integrals over time.
 
-use crate::assembly::wave::{centred_mean, spherical_bessel};
-use crate::panel::legendre::{Legendre, Nodal};
+use crate::assembly::wave::{centred_mean, spherical_bessels};
+use crate::panel::lanes::{ComplexLanes, Lanes};
+use crate::panel::legendre::{Legendre, Q};
+use crate::panel::vector::{LANES, vectorized};
 use num_complex::Complex64;
 
 /// The contact force from one time to another: a polynomial on each panel.
@@ -38,44 +40,48 @@ impl Pulse {
     /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
     /// ```
     pub fn transform_n_s(&self, omega_rad_s: f64) -> [f64; 2] {
-        let mut sum = Complex64::ZERO;
-        // most panels follow one of the same length
-        let follows =
-            |one: &Panel, next: &Panel| next.length_s == one.length_s && next.start_s == one.start_s + one.length_s;
-        for run in self.panels.chunk_by(follows) {
-            let [first, ..] = run else { continue };
-            let bessel = spherical_bessel(0.5 * omega_rad_s * first.length_s);
-            let middle_s = first.start_s - self.from_s + 0.5 * first.length_s;
-            let mut wave = first.length_s * Complex64::cis(omega_rad_s * middle_s);
-            let further = if run.len() > 1 { Complex64::cis(omega_rad_s * first.length_s) } else { Complex64::ONE };
-            for panel in run {
-                sum += wave * centred_mean(&bessel, &panel.force);
-                wave *= further;
-            }
-        }
-        [sum.re, sum.im]
+        self.transforms_n_s(&[omega_rad_s])[0]
     }
 
-    /// The same at `count` frequencies, the multiples of one step from zero on (rad/s), at a fraction of the cost of single ones:
-    /// the waves at the next frequency are those at the one before, turned further.
-    pub fn transforms_n_s(&self, step_rad_s: f64, count: usize) -> Vec<[f64; 2]> {
-        let mut sums = vec![Complex64::ZERO; count];
-        let mut last: Option<(f64, Vec<Nodal>)> = None;
+    /// The same at some frequencies (rad/s), at a fraction of the cost of single ones.
+    pub fn transforms_n_s(&self, omegas_rad_s: &[f64]) -> Vec<[f64; 2]> {
+        let mut transforms = Vec::with_capacity(omegas_rad_s.len());
+        vectorized(
+            #[inline(always)]
+            || {
+                for some in omegas_rad_s.chunks(LANES) {
+                    // the last ones are padded by the first of them
+                    let found = self.transforms(Lanes::of(|l| *some.get(l).unwrap_or(&some[0])));
+                    transforms.extend((0..some.len()).map(|l| [found.re.0[l], found.im.0[l]]));
+                }
+            },
+        );
+        transforms
+    }
+
+    #[inline(always)]
+    fn transforms(&self, omegas: Lanes) -> ComplexLanes {
+        let waves = |after_s: f64| ComplexLanes::of(|l| Complex64::cis(omegas.0[l] * after_s));
+        let mut sum = ComplexLanes::ZERO;
+        // the wave at this time
+        let (mut time_s, mut wave) = (self.from_s, ComplexLanes { re: Lanes::ONE, im: Lanes::ZERO });
+        // half a panel of this length turns it so far; most panels follow one of the same length
+        let (mut length_s, mut half, mut bessels) = (0.0, wave, [Lanes::ZERO; Q]);
         for panel in &self.panels {
-            let length_s = panel.length_s;
-            let bessels = match last.take() {
-                Some((known_s, bessels)) if known_s == length_s => bessels,
-                _ => (0..count).map(|i| spherical_bessel(0.5 * step_rad_s * i as f64 * length_s)).collect(),
-            };
-            let further = Complex64::cis(step_rad_s * (panel.start_s - self.from_s + 0.5 * length_s));
-            let mut wave = Complex64::new(length_s, 0.0);
-            for (sum, bessel) in sums.iter_mut().zip(&bessels) {
-                *sum += wave * centred_mean(bessel, &panel.force);
-                wave *= further;
+            if panel.start_s != time_s {
+                wave = waves(panel.start_s - self.from_s);
             }
-            last = Some((length_s, bessels));
+            if panel.length_s != length_s {
+                length_s = panel.length_s;
+                half = waves(0.5 * length_s);
+                bessels = spherical_bessels(omegas * (0.5 * length_s), half);
+            }
+            let middle = wave * half;
+            let [re, im] = centred_mean(&bessels, &panel.force);
+            sum = sum + middle * ComplexLanes { re, im } * length_s;
+            (time_s, wave) = (panel.start_s + length_s, middle * half);
         }
-        sums.into_iter().map(|sum| [sum.re, sum.im]).collect()
+        sum
     }
 
     /// `int F^2 dt` (N^2 s).
