@@ -18,22 +18,21 @@
 
 use crate::panel::forcing::rate;
 use crate::panel::lanes::{ComplexLanes, Lanes};
-use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::panel::legendre::{BASIS, Legendre, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW, dot, legendre, rule};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
-use crate::panel::vector::{LANES, sum_of_lanes, sum_over, vectorized};
+use crate::panel::vector::{LANES, sum_over, vectorized};
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
-/// For a mode that turns by at most this much (rad) the coarser rule is sufficient.
-const GENTLE: f64 = 1.0;
-static COARSE: LazyLock<Series<3>> = LazyLock::new(|| Series::new(GENTLE));
-static FINE: LazyLock<Series<5>> = LazyLock::new(|| Series::new(SLOW));
+/// Nodes that integrate the products of two rates of a mode that turns by at most [`SLOW`] rad, to rounding of each.
+const NODES: usize = 16;
+static SLOW_RATES: LazyLock<Series> = LazyLock::new(Series::new);
 
-/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and its
-/// upper half is left at zero.
+/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J). The matrix is symmetric, and only
+/// its lower half is used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Form {
     pub bb: f64,
@@ -57,10 +56,8 @@ impl Form {
         let turned = rate(mode) * h;
         if mode.damping_ratio * mode.omega_rad_s == 0.0 {
             Form::NONE
-        } else if turned <= GENTLE {
-            COARSE.form(mode, h)
         } else if turned <= SLOW {
-            FINE.form(mode, h)
+            SLOW_RATES.form(mode, h)
         } else if mode.damping_ratio < NEARLY_CRITICAL {
             ByParts::new(&[*mode; LANES], h).of_lane(0)
         } else {
@@ -101,44 +98,32 @@ impl Form {
     }
 }
 
-/// The rates of a mode: to a unit rate, and to unit Legendre forces.
-const RATES: usize = 1 + Q;
-
-/// Power series of the rates at the nodes of a Gauss rule on (0, 1), in `M` groups of [`LANES`].
-struct Series<const M: usize> {
-    weights: [Lanes; M],
-    /// `[i][p]`: `x^p/p!`, then `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
-    powers: [Vec<[Lanes; M]>; RATES],
+/// Power series of the rates of a mode, to a unit rate and to unit Legendre forces, at the nodes of a Gauss rule on (0, 1).
+struct Series {
+    weights: [f64; NODES],
+    /// `[p][i]`: `x^p/p!` at node `i`.
+    by_rate: Vec<[f64; NODES]>,
+    /// `[i/2][p][i%2][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds` at node `i`.
+    by_force: [Vec<[Nodal; 2]>; NODES / 2],
 }
 
-impl<const M: usize> Series<M> {
-    /// For modes that turn by at most `most` (rad).
-    fn new(most: f64) -> Series<M> {
-        let terms = BASIS.terms::<SERIES>(most, 2);
-        let rule = rule(const { NonZeroUsize::new(M * LANES).unwrap() });
-        let at_nodes = |value: &dyn Fn(usize) -> f64| -> [Lanes; M] {
-            array::from_fn(|group| Lanes::of(|lane| value(group * LANES + lane)))
+impl Series {
+    /// For modes that turn by at most [`SLOW`] rad.
+    fn new() -> Series {
+        let terms = BASIS.terms::<SERIES>(SLOW, 2);
+        let rule = rule(const { NonZeroUsize::new(NODES).unwrap() });
+        let mut powers = [1.0; NODES];
+        let next = |p: usize| {
+            let here = powers;
+            powers.iter_mut().zip(&rule).for_each(|(power, (x, _))| *power *= x * RECIPROCAL[p + 1]);
+            here
         };
-        let places = at_nodes(&|node| rule[node].0);
-        let mut powers: [_; RATES] = array::from_fn(|_| vec![[Lanes::ZERO; M]; terms]);
-        let [by_rate, by_force @ ..] = &mut powers;
-        let mut power = [Lanes::ONE; M];
-        for (p, at) in by_rate.iter_mut().enumerate() {
-            *at = power;
-            power = array::from_fn(|q| power[q] * (places[q] * ((p + 1) as f64).recip()));
-        }
-        for (y, w) in &BASIS.fine {
-            let polynomials: Vec<Nodal> = rule.iter().map(|(place, _)| legendre(place * y)).collect();
-            let values: [[Lanes; M]; Q] = array::from_fn(|n| at_nodes(&|node| polynomials[node][n]));
-            let mut kernel = places.map(|x| x * *w);
-            for p in 0..terms {
-                for (row, values) in by_force.iter_mut().zip(&values) {
-                    row[p] = array::from_fn(|q| row[p][q] + kernel[q] * values[q]);
-                }
-                kernel = array::from_fn(|q| kernel[q] * (places[q] * ((1.0 - y) / (p + 1) as f64)));
-            }
-        }
-        Series { weights: at_nodes(&|node| rule[node].1), powers }
+        let by_rate = (0..terms).map(next).collect();
+        let by_force = array::from_fn(|pair| {
+            let [one, other] = [0, 1].map(|i| repeated_integrals(rule[2 * pair + i].0, terms));
+            one.into_iter().zip(other).map(|(one, other)| [one, other]).collect()
+        });
+        Series { weights: array::from_fn(|i| rule[i].1), by_rate, by_force }
     }
 
     #[inline(always)]
@@ -154,31 +139,71 @@ impl<const M: usize> Series<M> {
             (here, next) = (next, -drag * next - square * here);
         }
 
-        let mut rates = [[Lanes::ZERO; M]; RATES];
-        for (values, powers) in rates.iter_mut().zip(&self.powers) {
-            for (derivative, power) in derivatives[..terms].iter().zip(powers) {
-                for q in 0..M {
-                    values[q] = values[q] + power[q] * *derivative;
+        let mut by_rate = [0.0; NODES];
+        for (derivative, powers) in derivatives[..terms].iter().zip(&self.by_rate) {
+            for i in 0..NODES {
+                by_rate[i] += derivative * powers[i];
+            }
+        }
+        let mut by_force = [[[0.0; Q]; 2]; NODES / 2];
+        for (rates, series) in by_force.iter_mut().zip(&self.by_force) {
+            for (derivative, powers) in derivatives[..terms].iter().zip(series) {
+                for i in 0..2 {
+                    for n in 0..Q {
+                        rates[i][n] += derivative * powers[i][n];
+                    }
                 }
             }
         }
-        let mut means = [[0.0; RATES]; RATES];
-        for n in 0..RATES {
-            for m in 0..=n {
-                let mut mean = Lanes::ZERO;
-                for q in 0..M {
-                    mean = mean + (self.weights[q] * rates[n][q]) * rates[m][q];
-                }
-                means[n][m] = sum_of_lanes(mean.0);
+        let by_force = by_force.as_flattened();
+        let mut form = Form::NONE;
+        for (i, by_force) in by_force.iter().enumerate() {
+            let weighted = self.weights[i] * by_rate[i];
+            form.bb += weighted * by_rate[i];
+            for n in 0..Q {
+                form.bq[n] += weighted * by_force[n];
             }
         }
-        let mut form = Form { bb: means[0][0], ..Form::NONE };
         for n in 0..Q {
-            form.bq[n] = means[n + 1][0];
-            form.qq[n].copy_from_slice(&means[n + 1][1..]);
+            for (by_force, weight) in by_force.iter().zip(&self.weights) {
+                let weighted = weight * by_force[n];
+                for m in 0..Q {
+                    form.qq[n][m] += weighted * by_force[m];
+                }
+            }
         }
         form.scaled(mode, h)
     }
+}
+
+/// `[p][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds`, the integral from zero taken `p + 1` times. Of `P_0` it is a power of `x`, and of the
+/// others `int_0^x P_n(2s-1) ds = (P_{n+1}(2x-1) - P_{n-1}(2x-1)) / (4n+2)`, which is itself integrated in the same way.
+fn repeated_integrals(x: f64, terms: usize) -> Vec<Nodal> {
+    const DIVISORS: [f64; SERIES + Q] = {
+        let (mut divisors, mut n) = ([0.0; SERIES + Q], 0);
+        while n < SERIES + Q {
+            divisors[n] = (4 * n + 2) as f64;
+            n += 1;
+        }
+        divisors
+    };
+    // each integral takes one polynomial more
+    let most = terms + Q - 1;
+    let mut values = [0.0; SERIES + Q];
+    (values[0], values[1]) = (1.0, 2.0 * x - 1.0);
+    for n in 1..most {
+        values[n + 1] = (0.5 * DIVISORS[n] * (2.0 * x - 1.0) * values[n] - n as f64 * values[n - 1]) / (n + 1) as f64;
+    }
+    let mut power = 1.0;
+    let integrals = (0..terms).map(|p| {
+        let before = values;
+        power *= x * RECIPROCAL[p + 1];
+        values[0] = power;
+        let others = values[1..most - p].iter_mut().zip(before.iter().zip(&before[2..])).zip(&DIVISORS[1..]);
+        others.for_each(|((value, (below, above)), divisor)| *value = (above - below) / divisor);
+        array::from_fn(|n| values[n])
+    });
+    integrals.collect()
 }
 
 /// Whether all these modes turn by more than a few radians and are damped below critical damping.
