@@ -8,11 +8,15 @@ pub use crate::scene::told::{counted, printable, shorten};
 pub(crate) fn filled(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
-        let longer = lines.last().map(|line| format!("{line} {word}")).filter(|line| fits(line));
-        match (longer, lines.last_mut()) {
-            (Some(longer), Some(line)) => *line = longer,
-            _ => lines.push(word.to_owned()),
+        if let Some(line) = lines.last_mut() {
+            let length = line.len();
+            line.extend([" ", word]);
+            if fits(line) {
+                continue;
+            }
+            line.truncate(length);
         }
+        lines.push(word.to_owned());
     }
     lines
 }
