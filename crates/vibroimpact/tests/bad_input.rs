@@ -555,6 +555,11 @@ fn errors_name_the_field_that_has_to_change() {
             "--over location_m, to = NaN is not allowed",
         ),
         (
+            &[&predictability[..], &["location_m=0.1:1:3", "--over", "location_m=0.1:1:3", "--blur", "location_m=1%"]]
+                .concat(),
+            "--over = \"location_m\" is not allowed; it must be stated only once for each field",
+        ),
+        (
             &[&predictability[..], &["location_m=0.1:1:3", "--blur", "location_m=-1%"]].concat(),
             "--blur location_m = -1.0% is not allowed; it must be a finite number greater than 0",
         ),

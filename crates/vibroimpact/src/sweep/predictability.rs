@@ -12,6 +12,9 @@ use crate::scene::FieldPath;
 use crate::scene::fields::POSITIVE;
 use crate::scene::json::{number, quote};
 
+/// What is allowed of a field that an option states twice.
+const ONCE: &str = "stated only once for each field";
+
 /// A field over which the spread is mapped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Over {
@@ -66,6 +69,12 @@ impl Sweep {
             let allowed = "stated for one or two fields, each with its values";
             return Err(InvalidInput::new("--over", format!("{} fields", over.len()), allowed).into());
         }
+        let stated_twice = |option: &str, field: &String| InvalidInput::new(option, quote(&json!(field)), ONCE);
+        if let [first, second] = over
+            && first.field == second.field
+        {
+            return Err(stated_twice("--over", &second.field).into());
+        }
         // JSON has no numbers that are not finite
         for Over { field, from, to, .. } in over {
             for (end, value) in [("from", *from), ("to", *to)] {
@@ -86,7 +95,7 @@ impl Sweep {
                 BlurWidth::Relative(share) => json!({ "lognormal": [about.unwrap_or(1.0), share] }),
             };
             if uncertain.insert(field.clone(), distribution).is_some() {
-                return Err(InvalidInput::new("--blur", quote(&json!(field)), "stated only once for each field").into());
+                return Err(stated_twice("--blur", field).into());
             }
         }
         let axis = |Over { field, from, to, count, scale }: &Over| {
