@@ -44,7 +44,7 @@ const QUICK: u32 = 4;
 const FIRST_FROM_PARENT: f64 = 0.125;
 /// Largest distance of its first orbit from the start, in steps: within 45 degrees of the eigenvector.
 const MOST_ASIDE: f64 = std::f64::consts::SQRT_2;
-/// A branch of twice the period has come back to its parent if its distance from it falls below this part of that of the orbit before.
+/// A step leads from a branch of twice the period onto its parent if its distance from it falls below this part of the one before.
 const JOINED: f64 = 1e-3;
 
 /// Follows the branch of periodic motions of `build(parameter)`. `stop` is called from time to time, and ends the branch
@@ -134,9 +134,21 @@ where
                 }
                 Step::Remembers(_) | Step::None => None,
             };
-            // a branch begins along the eigenvector, and not along its parent
-            let found = found.filter(|(next, ..)| {
-                rises.is_some() || self.chord(&current, next).is_ok_and(|chord| chord.norm() < MOST_ASIDE * step)
+            // through the parent, to the same orbits half a period later or to their mirror images
+            let joins = |moved: &DVector<f64>| {
+                asymmetry.as_ref().is_some_and(|before| before.dot(moved) < JOINED * before.norm_squared())
+            };
+            if let Some((next, _, moved)) = &found
+                && (joins(moved) || rises.is_some() && self.begins_at_pitchfork())
+                && let Some(special) = self.passed(&current, next)?
+            {
+                (branch.complete, branch.returns_to) = (true, Some(special));
+                break;
+            }
+            // otherwise it does not come near its parent, and it begins along the eigenvector
+            let found = found.filter(|(next, _, moved)| {
+                let along = || self.chord(&current, next).is_ok_and(|chord| chord.norm() < MOST_ASIDE * step);
+                !joins(moved) && (rises.is_some() || along())
             });
             if (self.stop)() {
                 branch.interrupted = true;
@@ -149,13 +161,6 @@ where
                 }
                 continue;
             };
-            // through the parent, to the same orbits half a period later or to their mirror images
-            let joined = |before: DVector<f64>| before.dot(&moved) < JOINED * before.norm_squared();
-            if asymmetry.is_some_and(joined) || rises.is_some() && self.passes_pitchfork(&current, &next)? {
-                branch.complete = true;
-                branch.returns_to = self.nearest_of_parent(&current, &next)?.map(|(special, _)| special);
-                break;
-            }
             asymmetry = Some(moved);
             let next = self.within_range(&current, next)?;
             let new_tangent = self.between(&current, &next, &tangent);

@@ -9,8 +9,9 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 
-/// Largest distance of a pitchfork from a chord that passes it, as a part of the chord.
-const NEAR_PITCHFORK: f64 = 0.5;
+/// Largest distance of a special point from the chord between two orbits, if the branch, a parabola there, passes it between them; as a
+/// part of the chord.
+const NEAR_PARENT: f64 = 0.5;
 
 impl<L, E, F> Follower<'_, F>
 where
@@ -41,30 +42,25 @@ where
         Ok(states)
     }
 
-    /// The special point of the parent, of the kind at which the branch begins, that is nearest to the chord from an orbit to the next
-    /// one, and its distance as a part of the chord.
-    pub(super) fn nearest_of_parent(&self, one: &BranchPoint, other: &BranchPoint) -> Result<Option<(usize, f64)>, E> {
+    /// The special point of the parent, of the kind at which the branch begins, that it passes between two orbits.
+    pub(super) fn passed(&self, one: &BranchPoint, other: &BranchPoint) -> Result<Option<usize>, E> {
         let Some(Origin { parent, kind, .. }) = self.origin else { return Ok(None) };
         let (scales, chord) = (self.scales(one)?, self.chord(one, other)?);
         let start = self.scaled(one.parameter, &Self::state(&one.orbit), &scales);
-        let mut nearest: Option<(usize, f64)> = None;
         for (i, point) in parent.iter().enumerate().filter(|(_, point)| point.kind == kind) {
             for state in self.states_here(point.parameter, &point.orbit)? {
                 let beside = self.scaled(point.parameter, &state, &scales) - &start;
                 let part = (beside.dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0);
-                let distance = (beside - part * &chord).norm() / chord.norm();
-                if nearest.is_none_or(|(_, least)| distance < least) {
-                    nearest = Some((i, distance));
+                if (beside - part * &chord).norm() < NEAR_PARENT * chord.norm() {
+                    return Ok(Some(i));
                 }
             }
         }
-        Ok(nearest)
+        Ok(None)
     }
 
-    /// Whether the branch passes a pitchfork of its parent, where it is a parabola, between two orbits.
-    pub(super) fn passes_pitchfork(&self, one: &BranchPoint, other: &BranchPoint) -> Result<bool, E> {
-        let begins = self.origin.as_ref().is_some_and(|origin| origin.kind == Special::Pitchfork);
-        Ok(begins && self.nearest_of_parent(one, other)?.is_some_and(|(_, distance)| distance < NEAR_PITCHFORK))
+    pub(super) fn begins_at_pitchfork(&self) -> bool {
+        self.origin.as_ref().is_some_and(|origin| origin.kind == Special::Pitchfork)
     }
 
     /// The direction in which a branch begins at another one: the state changes along the eigenvector of the multiplier -1 at a period
