@@ -228,14 +228,10 @@ fn doubled_branches_are_followed_drawn_and_written() {
 #[test]
 fn a_branch_between_two_pitchforks_is_followed_once() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = r#"{ "bodies": { "beam": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.03, "modes": 3,
-            "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 166.67, "mass_per_length_kg_m": 0.78 }] } },
-        "contacts": [{ "name": "stops", "between": [{ "body": "beam", "location_m": 0.5 }, "ground"], "two_sided": true,
-            "gap_m": 0.0005, "law": "kelvin-voigt", "stiffness_n_m": 1e5, "damping_n_s_m": 20 }],
-        "loads": [{ "body": "beam", "location_m": 0.3, "force_n": 6.5, "frequency_hz": 18 }], "end_s": 1 }"#;
-    fs::write(folder.path().join("stops.json"), scene).unwrap();
-    let words = ["orbit", "stops.json", "--over", "loads[0].frequency_hz", "--to", "20", "--step", "0.05"];
-    let arguments: Vec<&str> = words.into_iter().chain(["--branches", "1", "--json"]).collect();
+    let scene = datasets("assemblies/beam-between-stops.json").display().to_string();
+    let over = ["--over", "loads[0].frequency_hz", "--from", "18", "--to", "20", "--step", "0.05"];
+    let words = ["orbit", &scene, "--set", "loads[0].force_n=6.5"].into_iter().chain(over);
+    let arguments: Vec<&str> = words.chain(["--branches", "1", "--json"]).collect();
     let found: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
     let [one, other] = &found["special_points"].as_array().unwrap()[..] else { panic!("{}", found["special_points"]) };
     assert!([one, other].iter().all(|point| point["kind"] == "pitchfork"));
