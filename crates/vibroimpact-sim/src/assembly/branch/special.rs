@@ -53,7 +53,7 @@ pub struct SpecialPoint {
     /// The parameter.
     pub parameter: f64,
     /// Uncertainty of the parameter: half the distance of the two orbits on either side; at a fold, the distance of a third one that
-    /// is farther away.
+    /// is farther away; at a pitchfork, the last step of Newton's method.
     pub uncertainty: f64,
     /// Index of the first orbit of the branch after the point.
     pub before_orbit: usize,
