@@ -230,7 +230,7 @@ impl OrbitSummary {
 
 impl BranchSummary {
     /// The branch, number 0, and those that begin at others.
-    pub fn branches(&self) -> impl Iterator<Item = &BranchPart> {
+    pub fn all(&self) -> impl Iterator<Item = &BranchPart> {
         std::iter::once(&self.main).chain(self.branches.iter().map(|side| &side.branch))
     }
 
@@ -258,7 +258,7 @@ impl BranchSummary {
             }
         }
         table.write_record(&header)?;
-        for (number, branch) in self.branches().enumerate() {
+        for (number, branch) in self.all().enumerate() {
             for BranchOrbit { value, orbit } in &branch.orbits {
                 let mut row = vec![
                     value.to_string(),

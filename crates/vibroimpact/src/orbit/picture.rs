@@ -28,7 +28,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
     for (number, &i) in drawn.iter().enumerate() {
         let colour = Colour::of_series(number);
         let mut name = side_name(branch, i);
-        for part in branch.branches() {
+        for part in branch.all() {
             for (motions, stable) in stretches(part) {
                 let curve = |of: &dyn Fn(&PointMotion) -> f64| {
                     let (x, y): (Vec<f64>, Vec<f64>) =
@@ -49,7 +49,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
             }
         }
     }
-    for part in branch.branches() {
+    for part in branch.all() {
         let points = part.orbits.iter().map(|orbit| (orbit.value, orbit.orbit.largest_multiplier()));
         let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
         size = size.with(Series::line(&x, &y).colour(Colour::Blue));
@@ -62,7 +62,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
         (Special::NeimarkSacker, Marker::Cross),
         (Special::Grazing, Marker::Circle),
     ] {
-        let found = || branch.branches().flat_map(|part| &part.special_points).filter(|at| at.kind == kind.as_str());
+        let found = || branch.all().flat_map(|part| &part.special_points).filter(|at| at.kind == kind.as_str());
         if found().next().is_none() {
             continue;
         }
@@ -91,7 +91,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
 }
 
 fn orbits(branch: &BranchSummary) -> impl Iterator<Item = &BranchOrbit> {
-    branch.branches().flat_map(|part| &part.orbits)
+    branch.all().flat_map(|part| &part.orbits)
 }
 
 fn side_name(branch: &BranchSummary, i: usize) -> String {

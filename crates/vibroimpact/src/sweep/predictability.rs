@@ -12,9 +12,6 @@ use crate::scene::FieldPath;
 use crate::scene::fields::POSITIVE;
 use crate::scene::json::{number, quote};
 
-/// What is allowed of a field that an option states twice.
-const ONCE: &str = "stated only once for each field";
-
 /// A field over which the spread is mapped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Over {
@@ -69,7 +66,9 @@ impl Sweep {
             let allowed = "stated for one or two fields, each with its values";
             return Err(InvalidInput::new("--over", format!("{} fields", over.len()), allowed).into());
         }
-        let stated_twice = |option: &str, field: &String| InvalidInput::new(option, quote(&json!(field)), ONCE);
+        let stated_twice = |option: &str, field: &String| {
+            InvalidInput::new(option, quote(&json!(field)), "stated only once for each field")
+        };
         if let [first, second] = over
             && first.field == second.field
         {

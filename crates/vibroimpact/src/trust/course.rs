@@ -242,7 +242,6 @@ mod tests {
             let part = |three: &[f64]| (three[0] + 4.0 * three[1] + three[2]) * h / 3.0;
             let below: f64 = course.pulses[0].spectrum(&omegas).windows(3).step_by(2).map(part).sum();
             let (found, known) = (course.share_beyond(limit).unwrap(), 1.0 - below / whole);
-            println!("{turned}: {found:e} {known:e} {:.1e}", found / known - 1.0);
             assert!((found - known).abs() < 0.01 * known, "{turned}: {found:e} {known:e}");
         }
     }

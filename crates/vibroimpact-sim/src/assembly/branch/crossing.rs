@@ -17,7 +17,6 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// Largest number of iterations for the crossing, and for a point of the reduced equation.
 const ITERATIONS_MAX: u32 = 12;
-const REDUCED_MAX: u32 = 12;
 /// Displacement for the second derivatives.
 const DIFFERENCE: f64 = 1e-4;
 /// The iterations end with a step below this, which is the accuracy of differences of first derivatives.
@@ -41,7 +40,7 @@ pub(super) type Linearised = (DVector<f64>, DMatrix<f64>);
 type Function<'a, E> = dyn Fn(&DVector<f64>) -> Result<Option<Linearised>, E> + 'a;
 
 /// The crossing and the last step to it, if it is found within a distance of a point near it. All is scaled to the size of 1.
-pub(super) fn branch_point<E>(
+pub(super) fn crossing<E>(
     linearised: &Function<'_, E>,
     near: &DVector<f64>,
     distance: f64,
@@ -88,7 +87,7 @@ impl Reduced {
     ) -> Result<Option<Reduced>, E> {
         let n = v.len();
         let mut beta = 0.0;
-        for _ in 0..REDUCED_MAX {
+        for _ in 0..ITERATIONS_MAX {
             let Some((value, matrix)) = linearised(&z)? else { return Ok(None) };
             let bordered = DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
                 (true, true) => matrix[(i, j)],
@@ -98,7 +97,7 @@ impl Reduced {
             });
             let lu = bordered.lu();
             let defect = (value + beta * w).insert_row(n, 0.0);
-            let along_a = DVector::from_fn(n + 1, |i, _| if i < n { 0.0 } else { 1.0 });
+            let along_a = DVector::zeros(n).insert_row(n, 1.0);
             let along_p = (-matrix.column(n)).insert_row(n, 0.0);
             let solved = (lu.solve(&-defect), lu.solve(&along_a), lu.solve(&along_p));
             let (Some(change), Some(along_a), Some(along_p)) = solved else { return Ok(None) };
@@ -133,7 +132,7 @@ mod tests {
             let matrix = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, -1.0, y - 2.0 * z[0] * by_y, by_y, 0.0]);
             Ok::<_, ()>(Some((value, matrix)))
         };
-        let (found, step) = branch_point(&of, &DVector::from_vec(vec![0.38, 0.2, 0.4]), 0.5).unwrap().unwrap();
+        let (found, step) = crossing(&of, &DVector::from_vec(vec![0.38, 0.2, 0.4]), 0.5).unwrap().unwrap();
         assert!((found - DVector::from_vec(vec![0.3, 0.09, 0.3])).amax() < 1e-9 && step < NEAR);
     }
 }

@@ -1,5 +1,6 @@
 //! Steps along a branch.
 
+use super::crossing::Linearised;
 use super::settings::BranchSettings;
 use super::special::{BranchPoint, Special, SpecialPoint};
 use crate::assembly::orbit::{Orbit, OrbitOutcome, refine};
@@ -101,11 +102,20 @@ where
         state.component_div(scales).insert_row(state.len(), parameter / self.range())
     }
 
+    pub(super) fn scaled_point(&self, point: &BranchPoint, scales: &DVector<f64>) -> DVector<f64> {
+        self.scaled(point.parameter, &Self::state(&point.orbit), scales)
+    }
+
+    /// The state and the parameter that were scaled.
+    pub(super) fn unscaled(&self, at: &DVector<f64>, scales: &DVector<f64>) -> (DVector<f64>, f64) {
+        let n = scales.len();
+        (at.rows(0, n).component_mul(scales), at[n] * self.range())
+    }
+
     /// The difference of two orbits, scaled.
     pub(super) fn chord(&self, one: &BranchPoint, other: &BranchPoint) -> Result<DVector<f64>, E> {
         let scales = self.scales(one)?;
-        let scaled = |point: &BranchPoint| self.scaled(point.parameter, &Self::state(&point.orbit), &scales);
-        Ok(scaled(other) - scaled(one))
+        Ok(self.scaled_point(other, &scales) - self.scaled_point(one, &scales))
     }
 
     pub(super) fn scales(&self, point: &BranchPoint) -> Result<DVector<f64>, E> {
@@ -148,6 +158,14 @@ where
                 (jacobian[(i, j)] - f64::from(u8::from(i == j))) * scales[j] / scales[i]
             }
         })))
+    }
+
+    /// `P(x, p) - x` and its derivatives at a scaled point, all scaled; `None` where a run stops.
+    pub(super) fn equations(&self, at: &DVector<f64>, scales: &DVector<f64>) -> Result<Option<Linearised>, E> {
+        let (state, parameter) = self.unscaled(at, scales);
+        let Some(image) = self.image(parameter, &state) else { return Ok(None) };
+        let defect = (image - &state).component_div(scales);
+        Ok(self.linearised(&state, parameter, scales)?.map(|matrix| (defect, matrix)))
     }
 
     /// The unit vector along the branch, with the parameter towards the end of its range.
@@ -203,16 +221,11 @@ where
     /// The next orbit along the tangent, and the number of iterations.
     pub(super) fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Step, E> {
         let scales = self.scales(from)?;
-        let base = self.scaled(from.parameter, &Self::state(&from.orbit), &scales);
+        let base = self.scaled_point(from, &scales);
         let n = scales.len();
         let mut at = &base + step * tangent;
         for iteration in 1..=ITERATIONS_MAX {
-            let state = at.rows(0, n).component_mul(&scales);
-            let parameter = at[n] * self.range();
-            let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
-            let Ok(image) = map.apply(&state)? else { return Ok(Step::None) };
-            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(Step::None) };
-            let defect = (&image - &state).component_div(&scales);
+            let Some((defect, matrix)) = self.equations(&at, &scales)? else { return Ok(Step::None) };
             let made = (&at - &base).dot(tangent) - step;
             let whole = DMatrix::from_fn(n + 1, n + 1, |i, j| if i < n { matrix[(i, j)] } else { tangent[j] });
             let right = DVector::from_fn(n + 1, |i, _| if i < n { -defect[i] } else { -made });
@@ -222,8 +235,7 @@ where
             }
             at += &change;
             if change.amax() < self.settings.orbit.closure.sqrt() * 1e-2 {
-                let parameter = at[n] * self.range();
-                let state = at.rows(0, n).component_mul(&scales);
+                let (state, parameter) = self.unscaled(&at, &scales);
                 let Ok(map) = self.map(parameter) else { return Ok(Step::None) };
                 return Ok(match refine(&map, state, &self.settings.orbit)? {
                     OrbitOutcome::Found(orbit) => Step::Found(BranchPoint { parameter, orbit: *orbit }, iteration),

@@ -1,6 +1,6 @@
 //! Special points between two neighbours on a branch.
 
-use super::crossing::branch_point;
+use super::crossing::crossing;
 use super::follower::{Follower, Step};
 use super::special::{BranchPoint, Special, SpecialPoint, differences, nearest_to_one};
 use crate::assembly::orbit::{Orbit, OrbitOutcome, refine};
@@ -30,19 +30,12 @@ where
         before_orbit: usize,
     ) -> Result<Option<SpecialPoint>, E> {
         let (scales, chord) = (self.scales(one)?, self.chord(one, other)?);
-        let n = scales.len();
         let beyond = [one, other].map(|point| nearest_to_one(&point.orbit) - 1.0);
         let part = (beyond[0] / (beyond[0] - beyond[1])).clamp(0.0, 1.0);
-        let start = self.scaled(one.parameter, &Self::state(&one.orbit), &scales) + part * &chord;
-        let unscaled = |z: &DVector<f64>| (z.rows(0, n).component_mul(&scales), z[n] * self.range());
-        let linearised = |z: &DVector<f64>| {
-            let (state, parameter) = unscaled(z);
-            let Some(image) = self.image(parameter, &state) else { return Ok(None) };
-            let defect = (image - &state).component_div(&scales);
-            Ok::<_, E>(self.linearised(&state, parameter, &scales)?.map(|matrix| (defect, matrix)))
-        };
-        let Some((found, last_step)) = branch_point(&linearised, &start, chord.norm())? else { return Ok(None) };
-        let (state, parameter) = unscaled(&found);
+        let start = self.scaled_point(one, &scales) + part * &chord;
+        let equations = |at: &DVector<f64>| self.equations(at, &scales);
+        let Some((found, last_step)) = crossing(&equations, &start, chord.norm())? else { return Ok(None) };
+        let (state, parameter) = self.unscaled(&found, &scales);
         Ok(match refine(&self.map(parameter)?, state, &self.settings.orbit)? {
             OrbitOutcome::Found(orbit) => {
                 let uncertainty = last_step * self.range().abs();

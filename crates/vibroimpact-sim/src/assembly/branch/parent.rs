@@ -46,7 +46,7 @@ where
     pub(super) fn passed(&self, one: &BranchPoint, other: &BranchPoint) -> Result<Option<usize>, E> {
         let Some(Origin { parent, kind, .. }) = self.origin else { return Ok(None) };
         let (scales, chord) = (self.scales(one)?, self.chord(one, other)?);
-        let start = self.scaled(one.parameter, &Self::state(&one.orbit), &scales);
+        let start = self.scaled_point(one, &scales);
         for (i, point) in parent.iter().enumerate().filter(|(_, point)| point.kind == kind) {
             for state in self.states_here(point.parameter, &point.orbit)? {
                 let beside = self.scaled(point.parameter, &state, &scales) - &start;
